@@ -1,0 +1,29 @@
+#pragma once
+
+#include <vector>
+
+#include "gfp/memory/object_view.hpp"
+#include "gfp/selection/object_estimate.hpp"
+
+namespace gfp {
+
+/// One fit with what was believed of its class before.
+struct Candidate {
+  FittedModel model;
+  double log_prior = 0;
+};
+
+struct SelectionOptions {
+  double context_weight = 0.0;   ///< Of co-occurrence and relative size over the scene; 0 switches it off.
+};
+
+template <class Visitor>
+void visit_fields(SelectionOptions& o, Visitor&& field) {
+  field("context_weight", o.context_weight, 0.0, 10.0);
+}
+
+/// Which of its candidates each object is, decided jointly. `candidates[i]` belongs to `views[i]` and is not empty.
+std::vector<ObjectEstimate> select_models(const std::vector<ObjectView>& views, std::vector<std::vector<Candidate>> candidates,
+                                          const SelectionOptions& options = {});
+
+}  // namespace gfp
