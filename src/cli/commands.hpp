@@ -1,0 +1,12 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+#include "cli/exit_code.hpp"
+
+namespace gfp {
+
+/// Each adds one subcommand to `app`; when the command runs (in a CLI11 callback), it says in `status` how it ended.
+/// `status` lives as long as `app`.
+
+}  // namespace gfp

@@ -1,0 +1,34 @@
+// gfp: the command-line tool. Each subcommand is one file beside this one.
+#include <exception>
+#include <iostream>
+#include <string>
+
+#include "cli/commands.hpp"
+#include "gfp/core/version.hpp"
+
+namespace {
+
+int run(int argc, char** argv) {
+  gfp::ExitStatus status;
+  CLI::App app{"Closed, graspable object models from depth images", "gfp"};
+  app.set_version_flag("--version", "gfp " + std::string(gfp::version()));
+  app.require_subcommand(1);
+  app.footer("Every command has --help and --json. Exit codes follow sysexits.h.");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? gfp::kExitOk : gfp::kExitUsage;  // help and version are no errors
+  }
+  return status.code();
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return run(argc, argv);
+  } catch (const std::exception& error) {
+    std::cerr << "gfp: " << error.what() << " (a bug: please report it)\n";
+    return gfp::kExitSoftware;
+  }
+}
