@@ -22,12 +22,17 @@ struct DepthTile {
   bool hit(int cell) const { return triangle[static_cast<std::size_t>(cell)] >= 0; }
 };
 
+struct RasteriseOptions {
+  std::int32_t first_triangle = 0;  ///< Added to the indices, so that several meshes can share a tile.
+  double near_m = 0.05;             ///< Triangles that reach nearer than this are skipped.
+  bool cull_back = false;           ///< Skip triangles seen from behind: half the work, and the same picture for a closed mesh.
+};
+
 /// Rasterises triangles with a z-buffer: exact perspective depth at pixel centres, nearest wins, ties to the lower index.
-/// Triangles that reach nearer than `near_m` are skipped. Both sides are drawn: a closed mesh hides its own back.
-/// `vertices_camera`: metres, camera frame. `tile` must have been reset; several meshes may be drawn into one tile, then
-/// `first_triangle` is added to the indices. Cost: about 50 us for 1200 triangles on a 64 x 64 tile.
-void rasterise(const std::vector<Eigen::Vector3d>& vertices_camera, const std::vector<Triangle>& triangles,
-               const CameraModel& camera, DepthTile& tile, std::int32_t first_triangle = 0, double near_m = 0.05);
+/// `vertices_camera`: metres, camera frame. `tile` must have been reset; several meshes may be drawn into one tile.
+/// Cost: about 50 us for 1200 triangles on a 64 x 64 tile.
+void rasterise(const std::vector<Eigen::Vector3d>& vertices_camera, const std::vector<Triangle>& triangles, const CameraModel& camera,
+               DepthTile& tile, const RasteriseOptions& options = {});
 
 /// Barycentric coordinates of the point where the ray through pixel (u, v) meets the triangle's plane; they sum to 1.
 Eigen::Vector3d barycentric_on_ray(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c,

@@ -1,0 +1,225 @@
+#include "gfp/core/mesh.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace gfp {
+namespace {
+
+using Eigen::Vector3d;
+
+struct HalfEdge {
+  std::int32_t low, high, triangle;
+  bool forward;  ///< Walked from low to high.
+  friend bool operator<(const HalfEdge& a, const HalfEdge& b) {
+    return std::tie(a.low, a.high, a.triangle) < std::tie(b.low, b.high, b.triangle);
+  }
+};
+
+std::vector<HalfEdge> sorted_half_edges(const TriangleMesh& mesh) {
+  std::vector<HalfEdge> edges;
+  edges.reserve(3 * mesh.triangles.size());
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    for (int k = 0; k < 3; ++k) {
+      const auto a = mesh.triangles[t][static_cast<std::size_t>(k)];
+      const auto b = mesh.triangles[t][static_cast<std::size_t>((k + 1) % 3)];
+      edges.push_back({std::min(a, b), std::max(a, b), static_cast<std::int32_t>(t), a < b});
+    }
+  }
+  std::sort(edges.begin(), edges.end());
+  return edges;
+}
+
+class UnionFind {
+ public:
+  explicit UnionFind(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0); }
+  int find(int i) {
+    while (parent_[static_cast<std::size_t>(i)] != i) {
+      auto& parent = parent_[static_cast<std::size_t>(i)];
+      parent = parent_[static_cast<std::size_t>(parent)];
+      i = parent;
+    }
+    return i;
+  }
+  void join(int a, int b) { parent_[static_cast<std::size_t>(find(a))] = find(b); }
+
+ private:
+  std::vector<int> parent_;
+};
+
+/// Vertices whose triangles do not form one fan: the triangles about a vertex, joined over shared edges, must be one group.
+int count_nonmanifold_vertices(const TriangleMesh& mesh, const std::vector<HalfEdge>& edges) {
+  UnionFind corners(3 * mesh.triangles.size());
+  const auto corner = [&](std::int32_t triangle, std::int32_t vertex) {
+    const auto& t = mesh.triangles[static_cast<std::size_t>(triangle)];
+    return 3 * triangle + (t[0] == vertex ? 0 : t[1] == vertex ? 1 : 2);
+  };
+  for (std::size_t e = 0; e + 1 < edges.size(); ++e) {
+    const HalfEdge &a = edges[e], &b = edges[e + 1];
+    if (a.low != b.low || a.high != b.high) continue;
+    corners.join(corner(a.triangle, a.low), corner(b.triangle, a.low));
+    corners.join(corner(a.triangle, a.high), corner(b.triangle, a.high));
+  }
+  std::vector<int> fans(mesh.vertices.size(), 0);
+  for (std::size_t c = 0; c < 3 * mesh.triangles.size(); ++c)
+    if (corners.find(static_cast<int>(c)) == static_cast<int>(c)) ++fans[static_cast<std::size_t>(mesh.triangles[c / 3][c % 3])];
+  return static_cast<int>(std::count_if(fans.begin(), fans.end(), [](int n) { return n > 1; }));
+}
+
+Vector3d area_vector(const TriangleMesh& mesh, const Triangle& t) {
+  const Vector3d& a = mesh.vertices[static_cast<std::size_t>(t[0])];
+  return 0.5 * (mesh.vertices[static_cast<std::size_t>(t[1])] - a).cross(mesh.vertices[static_cast<std::size_t>(t[2])] - a);
+}
+
+}  // namespace
+
+MeshTopology examine_topology(const TriangleMesh& mesh) {
+  MeshTopology result;
+  const auto edges = sorted_half_edges(mesh);
+  UnionFind pieces(mesh.vertices.size());
+  int edge_count = 0;
+  for (std::size_t first = 0; first < edges.size();) {
+    std::size_t last = first;
+    int forward = 0;
+    for (; last < edges.size() && edges[last].low == edges[first].low && edges[last].high == edges[first].high; ++last)
+      forward += edges[last].forward ? 1 : 0;
+    const auto uses = static_cast<int>(last - first);
+    pieces.join(edges[first].low, edges[first].high);
+    ++edge_count;
+    if (uses == 1) ++result.boundary_edges;
+    if (uses > 2 || (uses == 2 && forward != 1) || edges[first].low == edges[first].high) ++result.nonmanifold_edges;
+    first = last;
+  }
+  result.nonmanifold_vertices = count_nonmanifold_vertices(mesh, edges);
+
+  std::vector<char> used(mesh.vertices.size(), 0);
+  for (const auto& t : mesh.triangles)
+    for (const auto v : t) used[static_cast<std::size_t>(v)] = 1;
+  int used_count = 0;
+  for (std::size_t v = 0; v < used.size(); ++v) {
+    if (!used[v]) continue;
+    ++used_count;
+    if (pieces.find(static_cast<int>(v)) == static_cast<int>(v)) ++result.components;
+  }
+  result.euler_characteristic = used_count - edge_count + static_cast<int>(mesh.triangles.size());
+  result.closed = !mesh.triangles.empty() && result.boundary_edges == 0 && result.nonmanifold_edges == 0 && result.nonmanifold_vertices == 0;
+  return result;
+}
+
+double signed_volume(const TriangleMesh& mesh) {
+  if (mesh.vertices.empty()) return 0;
+  const Vector3d& origin = mesh.vertices.front();  // near the mesh: keeps the sum's rounding small
+  double six_volumes = 0;
+  for (const auto& t : mesh.triangles)
+    six_volumes += (mesh.vertices[static_cast<std::size_t>(t[0])] - origin)
+                       .dot((mesh.vertices[static_cast<std::size_t>(t[1])] - origin).cross(mesh.vertices[static_cast<std::size_t>(t[2])] - origin));
+  return six_volumes / 6.0;
+}
+
+double surface_area(const TriangleMesh& mesh) {
+  double area = 0;
+  for (const auto& t : mesh.triangles) area += area_vector(mesh, t).norm();
+  return area;
+}
+
+Vector3d volume_centroid(const TriangleMesh& mesh) {
+  if (mesh.vertices.empty()) return Vector3d::Zero();
+  const Vector3d origin = mesh.vertices.front();
+  Vector3d moment = Vector3d::Zero();
+  double six_volumes = 0;
+  for (const auto& t : mesh.triangles) {
+    const Vector3d a = mesh.vertices[static_cast<std::size_t>(t[0])] - origin;
+    const Vector3d b = mesh.vertices[static_cast<std::size_t>(t[1])] - origin;
+    const Vector3d c = mesh.vertices[static_cast<std::size_t>(t[2])] - origin;
+    const double six_volume = a.dot(b.cross(c));
+    moment += six_volume * (a + b + c) / 4.0;
+    six_volumes += six_volume;
+  }
+  if (std::abs(six_volumes) < 1e-18) return bounds(mesh.vertices).centre();
+  return origin + moment / six_volumes;
+}
+
+Bounds bounds(const std::vector<Vector3d>& points) {
+  Bounds box;
+  for (const auto& p : points) box.include(p);
+  return box;
+}
+
+std::vector<Vector3d> triangle_normals(const TriangleMesh& mesh) {
+  std::vector<Vector3d> normals;
+  normals.reserve(mesh.triangles.size());
+  for (const auto& t : mesh.triangles) {
+    const Vector3d area = area_vector(mesh, t);
+    const double norm = area.norm();
+    normals.push_back(norm > 0 ? Vector3d(area / norm) : Vector3d(Vector3d::Zero()));
+  }
+  return normals;
+}
+
+std::vector<Vector3d> vertex_normals(const TriangleMesh& mesh) {
+  std::vector<Vector3d> normals(mesh.vertices.size(), Vector3d::Zero());
+  const auto faces = triangle_normals(mesh);
+  for (std::size_t f = 0; f < mesh.triangles.size(); ++f) {
+    const auto& t = mesh.triangles[f];
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto i = static_cast<std::size_t>(t[k]);
+      const Vector3d a = mesh.vertices[static_cast<std::size_t>(t[(k + 1) % 3])] - mesh.vertices[i];
+      const Vector3d b = mesh.vertices[static_cast<std::size_t>(t[(k + 2) % 3])] - mesh.vertices[i];
+      normals[i] += std::atan2(a.cross(b).norm(), a.dot(b)) * faces[f];
+    }
+  }
+  for (auto& n : normals) {
+    const double norm = n.norm();
+    if (norm > 0) n /= norm;
+  }
+  return normals;
+}
+
+VertexAdjacency vertex_adjacency(const TriangleMesh& mesh) {
+  std::vector<std::pair<std::int32_t, std::int32_t>> pairs;
+  pairs.reserve(6 * mesh.triangles.size());
+  for (const auto& t : mesh.triangles) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      pairs.emplace_back(t[k], t[(k + 1) % 3]);
+      pairs.emplace_back(t[(k + 1) % 3], t[k]);
+    }
+  }
+  std::sort(pairs.begin(), pairs.end());
+  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+  VertexAdjacency adjacency;
+  adjacency.offsets.assign(mesh.vertices.size() + 1, 0);
+  adjacency.indices.reserve(pairs.size());
+  for (const auto& [from, to] : pairs) {
+    ++adjacency.offsets[static_cast<std::size_t>(from) + 1];
+    adjacency.indices.push_back(to);
+  }
+  std::partial_sum(adjacency.offsets.begin(), adjacency.offsets.end(), adjacency.offsets.begin());
+  return adjacency;
+}
+
+double mean_edge_length(const TriangleMesh& mesh) {
+  const auto adjacency = vertex_adjacency(mesh);
+  double sum = 0;
+  for (std::size_t i = 0; i < mesh.vertices.size(); ++i)
+    for (auto k = adjacency.offsets[i]; k < adjacency.offsets[i + 1]; ++k)
+      sum += (mesh.vertices[i] - mesh.vertices[static_cast<std::size_t>(adjacency.indices[static_cast<std::size_t>(k)])]).norm();
+  return adjacency.indices.empty() ? 0 : sum / static_cast<double>(adjacency.indices.size());
+}
+
+TriangleMesh transformed(const TriangleMesh& mesh, const Transform& T_to_from) {
+  TriangleMesh result;
+  result.triangles = mesh.triangles;
+  result.vertices.reserve(mesh.vertices.size());
+  for (const auto& v : mesh.vertices) result.vertices.push_back(T_to_from * v);
+  return result;
+}
+
+void append(TriangleMesh& mesh, const TriangleMesh& more) {
+  const auto offset = static_cast<std::int32_t>(mesh.vertices.size());
+  mesh.vertices.insert(mesh.vertices.end(), more.vertices.begin(), more.vertices.end());
+  for (const auto& t : more.triangles) mesh.triangles.push_back({t[0] + offset, t[1] + offset, t[2] + offset});
+}
+
+}  // namespace gfp

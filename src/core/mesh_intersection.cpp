@@ -1,0 +1,151 @@
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "gfp/core/mesh.hpp"
+
+// Self-intersections: candidate pairs from a uniform grid, then edge-against-triangle tests. Two triangles cross exactly when
+// an edge of one pierces the other (or they overlap in one plane); edges that start in a shared vertex cannot pierce.
+
+namespace gfp {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kTolerance = 1e-12;  ///< m^3 and m^2 quantities of centimetre triangles are about 1e-7.
+
+double orient(const Vector3d& a, const Vector3d& b, const Vector3d& c, const Vector3d& d) {
+  return (b - a).cross(c - a).dot(d - a);
+}
+
+/// Does the open segment pq pass through the inside of triangle abc?
+bool pierces(const Vector3d& p, const Vector3d& q, const Vector3d& a, const Vector3d& b, const Vector3d& c) {
+  const double scale = kTolerance * 1e-3;
+  const double side_p = orient(a, b, c, p), side_q = orient(a, b, c, q);
+  if (!((side_p > scale && side_q < -scale) || (side_p < -scale && side_q > scale))) return false;
+  const double u = orient(p, q, a, b), v = orient(p, q, b, c), w = orient(p, q, c, a);
+  return (u > scale && v > scale && w > scale) || (u < -scale && v < -scale && w < -scale);
+}
+
+using Vector2d = Eigen::Vector2d;
+
+double cross(const Vector2d& a, const Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
+
+/// Do two triangles of one plane overlap with positive area? Separating axes among their six edge normals.
+bool overlap_in_plane(const Vector2d (&s)[3], const Vector2d (&t)[3]) {
+  const auto separated_by_edges_of = [](const Vector2d (&first)[3], const Vector2d (&second)[3]) {
+    const double turn = cross(first[1] - first[0], first[2] - first[0]) > 0 ? 1.0 : -1.0;
+    for (int k = 0; k < 3; ++k) {
+      const Vector2d edge = first[(k + 1) % 3] - first[k];
+      bool all_outside = true;
+      for (const auto& p : second) all_outside &= turn * cross(edge, p - first[k]) <= 1e-9 * edge.norm();
+      if (all_outside) return true;
+    }
+    return false;
+  };
+  return !separated_by_edges_of(s, t) && !separated_by_edges_of(t, s);
+}
+
+bool coplanar_overlap(const Vector3d (&s)[3], const Vector3d (&t)[3]) {
+  Vector3d normal = (s[1] - s[0]).cross(s[2] - s[0]);
+  const double norm = normal.norm();
+  if (norm < kTolerance) return false;  // a sliver has no plane and no area to overlap with
+  normal /= norm;
+  for (const auto& p : t)
+    if (std::abs(normal.dot(p - s[0])) > 1e-9) return false;
+  Eigen::Index drop = 0;
+  normal.cwiseAbs().maxCoeff(&drop);
+  const auto flat = [drop](const Vector3d& p) {
+    return drop == 0 ? Vector2d(p.y(), p.z()) : drop == 1 ? Vector2d(p.x(), p.z()) : Vector2d(p.x(), p.y());
+  };
+  return overlap_in_plane({flat(s[0]), flat(s[1]), flat(s[2])}, {flat(t[0]), flat(t[1]), flat(t[2])});
+}
+
+bool cross_each_other(const TriangleMesh& mesh, const Triangle& first, const Triangle& second) {
+  const auto point = [&](std::int32_t v) -> const Vector3d& { return mesh.vertices[static_cast<std::size_t>(v)]; };
+  const auto has = [](const Triangle& t, std::int32_t v) { return t[0] == v || t[1] == v || t[2] == v; };
+  const int shared = static_cast<int>(has(second, first[0])) + static_cast<int>(has(second, first[1])) + static_cast<int>(has(second, first[2]));
+  if (shared == 3) return true;  // the same triangle twice
+  const auto edges_pierce = [&](const Triangle& edges, const Triangle& face) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto p = edges[k], q = edges[(k + 1) % 3];
+      if (has(face, p) || has(face, q)) continue;
+      if (pierces(point(p), point(q), point(face[0]), point(face[1]), point(face[2]))) return true;
+    }
+    return false;
+  };
+  if (shared < 2 && (edges_pierce(first, second) || edges_pierce(second, first))) return true;
+  return coplanar_overlap({point(first[0]), point(first[1]), point(first[2])}, {point(second[0]), point(second[1]), point(second[2])});
+}
+
+/// Counting-sorted lists of the triangles whose boxes touch each cell.
+class TriangleGrid {
+ public:
+  TriangleGrid(const std::vector<Bounds>& boxes, const Bounds& all, double cell_m) : origin_(all.low), cell_(cell_m) {
+    for (int axis = 0; axis < 3; ++axis)
+      counts_[axis] = std::clamp(static_cast<int>(all.size()[axis] / cell_) + 1, 1, 64);
+    for (int axis = 0; axis < 3; ++axis) steps_[axis] = std::max(all.size()[axis] / counts_[axis], 1e-12);
+    starts_.assign(static_cast<std::size_t>(counts_[0] * counts_[1] * counts_[2]) + 1, 0);
+    for (std::size_t t = 0; t < boxes.size(); ++t) for_cells(boxes[t], [&](std::size_t cell) { ++starts_[cell + 1]; });
+    for (std::size_t c = 1; c < starts_.size(); ++c) starts_[c] += starts_[c - 1];
+    members_.resize(static_cast<std::size_t>(starts_.back()));
+    auto next = starts_;
+    for (std::size_t t = 0; t < boxes.size(); ++t)
+      for_cells(boxes[t], [&](std::size_t cell) { members_[static_cast<std::size_t>(next[cell]++)] = static_cast<std::int32_t>(t); });
+  }
+
+  std::size_t cells() const { return starts_.size() - 1; }
+  std::pair<const std::int32_t*, const std::int32_t*> members(std::size_t cell) const {
+    return {members_.data() + starts_[cell], members_.data() + starts_[cell + 1]};
+  }
+  std::size_t cell_of(const Vector3d& p) const { return index(coordinate(p, 0), coordinate(p, 1), coordinate(p, 2)); }
+
+ private:
+  int coordinate(const Vector3d& p, int axis) const {
+    return std::clamp(static_cast<int>((p[axis] - origin_[axis]) / steps_[axis]), 0, counts_[axis] - 1);
+  }
+  std::size_t index(int x, int y, int z) const { return static_cast<std::size_t>((z * counts_[1] + y) * counts_[0] + x); }
+  template <class Visit>
+  void for_cells(const Bounds& box, Visit&& visit) const {
+    for (int z = coordinate(box.low, 2); z <= coordinate(box.high, 2); ++z)
+      for (int y = coordinate(box.low, 1); y <= coordinate(box.high, 1); ++y)
+        for (int x = coordinate(box.low, 0); x <= coordinate(box.high, 0); ++x) visit(index(x, y, z));
+  }
+
+  Vector3d origin_;
+  double cell_;
+  int counts_[3];
+  double steps_[3];
+  std::vector<std::int32_t> starts_, members_;
+};
+
+}  // namespace
+
+int count_self_intersections(const TriangleMesh& mesh, int limit) {
+  if (mesh.triangles.empty()) return 0;
+  std::vector<Bounds> boxes(mesh.triangles.size());
+  double mean_side = 0;
+  for (std::size_t t = 0; t < boxes.size(); ++t) {
+    for (const auto v : mesh.triangles[t]) boxes[t].include(mesh.vertices[static_cast<std::size_t>(v)]);
+    mean_side += boxes[t].size().maxCoeff() / static_cast<double>(boxes.size());
+  }
+  const TriangleGrid grid(boxes, bounds(mesh.vertices), std::max(mean_side, 1e-9));
+  int count = 0;
+  for (std::size_t cell = 0; cell < grid.cells(); ++cell) {
+    const auto [first, last] = grid.members(cell);
+    for (auto a = first; a != last; ++a) {
+      for (auto b = a + 1; b != last; ++b) {
+        const Bounds &box_a = boxes[static_cast<std::size_t>(*a)], &box_b = boxes[static_cast<std::size_t>(*b)];
+        const Vector3d low = box_a.low.cwiseMax(box_b.low), high = box_a.high.cwiseMin(box_b.high);
+        if ((low.array() > high.array()).any()) continue;
+        if (grid.cell_of(low) != cell) continue;  // a pair that shares several cells is looked at once
+        if (!cross_each_other(mesh, mesh.triangles[static_cast<std::size_t>(*a)], mesh.triangles[static_cast<std::size_t>(*b)])) continue;
+        if (++count >= limit) return count;
+      }
+    }
+  }
+  return count;
+}
+
+}  // namespace gfp
