@@ -1,0 +1,117 @@
+#include "gfp/frame/run_source.hpp"
+
+#include <chrono>
+#include <memory>
+
+// States:  connecting -> streaming <-> stalled -> lost -> (back-off) connecting ...
+//          any -> ended | failed | stopped, which are final.
+
+namespace gfp {
+namespace {
+
+/// A wrong path or option stays wrong; a device that is not there may come.
+bool is_permanent(ErrorCode code) {
+  return code == ErrorCode::kInvalidArgument || code == ErrorCode::kUnsupported || code == ErrorCode::kCorruptData ||
+         code == ErrorCode::kTooLarge;
+}
+
+bool is_final(SourceState state) {
+  return state == SourceState::kEnded || state == SourceState::kFailed || state == SourceState::kStopped;
+}
+
+/// One call of run_source(): the status and who is told about it.
+class Run {
+ public:
+  Run(FrameSource& source, LatestSlot<FramePtr>& out, const SourceOptions& options, const std::stop_token& stop,
+      const std::function<void(const SourceStatus&)>& on_change)
+      : source_(source), out_(out), options_(options), stop_(stop), on_change_(on_change) {}
+
+  SourceStatus until_final() {
+    Backoff backoff(options_.reconnect);
+    while (!is_final(status_.state)) {
+      if (open()) stream(backoff);
+      source_.close();
+      // The back-off is part of being lost: a frame, not a successful open(), proves that the device is back.
+      if (!is_final(status_.state) && !backoff.wait(stop_)) change(SourceState::kStopped);
+    }
+    out_.close();
+    return status_;
+  }
+
+ private:
+  bool open() {
+    if (stop_.stop_requested()) return change(SourceState::kStopped), false;
+    const Result<void> opened = source_.open();
+    if (opened) return true;
+    status_.last_error = opened.error();
+    change(is_permanent(opened.error().code) ? SourceState::kFailed : SourceState::kLost);
+    return false;
+  }
+
+  void stream(Backoff& backoff) {
+    const auto timeout = std::chrono::milliseconds(static_cast<std::int64_t>(1e3 * options_.grab_timeout_s));
+    for (int stalls = 0; stalls < options_.stalls_before_reopen;) {
+      if (stop_.stop_requested()) return change(SourceState::kStopped);
+      Result<Frame> frame = source_.grab(timeout);
+      if (frame) {
+        if (!deliver(std::move(*frame))) return change(SourceState::kStopped);
+        backoff.reset();
+        stalls = 0;
+        continue;
+      }
+      status_.last_error = frame.error();
+      if (frame.error().code == ErrorCode::kEndOfStream) return change(SourceState::kEnded);
+      if (frame.error().code == ErrorCode::kDeviceLost) return change(SourceState::kLost);
+      ++(frame.error().code == ErrorCode::kTimeout ? status_.timeouts : status_.corrupt_frames);
+      ++stalls;
+      if (status_.state == SourceState::kStreaming) change(SourceState::kStalled);
+    }
+    change(SourceState::kLost);
+  }
+
+  bool deliver(Frame frame) {
+    if (!out_.put(std::make_shared<const Frame>(std::move(frame)), stop_)) return false;
+    ++status_.frames;
+    if (was_lost_) ++status_.reconnects;
+    was_lost_ = false;
+    change(SourceState::kStreaming);
+    return true;
+  }
+
+  void change(SourceState state) {
+    if (state == SourceState::kLost && status_.frames > 0) was_lost_ = true;
+    if (state == status_.state) return;
+    status_.state = state;
+    if (on_change_) on_change_(status_);
+  }
+
+  FrameSource& source_;
+  LatestSlot<FramePtr>& out_;
+  const SourceOptions& options_;
+  const std::stop_token& stop_;
+  const std::function<void(const SourceStatus&)>& on_change_;
+  SourceStatus status_;
+  bool was_lost_ = false;
+};
+
+}  // namespace
+
+std::string_view to_string(SourceState state) {
+  switch (state) {
+    case SourceState::kConnecting: return "connecting";
+    case SourceState::kStreaming: return "streaming";
+    case SourceState::kStalled: return "stalled";
+    case SourceState::kLost: return "lost";
+    case SourceState::kEnded: return "ended";
+    case SourceState::kFailed: return "failed";
+    case SourceState::kStopped: return "stopped";
+  }
+  return "unknown";
+}
+
+SourceStatus run_source(FrameSource& source, LatestSlot<FramePtr>& out, const SourceOptions& options,
+                        const std::stop_token& stop, const std::function<void(const SourceStatus&)>& on_change) {
+  return Run(source, out, options, stop, on_change).until_final();
+}
+
+}  // namespace gfp
