@@ -31,6 +31,7 @@ struct WarmStart {
   Eigen::Vector3d scale = Eigen::Vector3d::Ones();
   std::vector<double> modes;
   int unchanged_frames = 0;
+  double cost = std::numeric_limits<double>::infinity();  ///< FitEvidence::cost of that fit: a warm fit that got worse is searched anew.
 };
 
 /// All that one object's fit may look at: a copy of its part of the frame, cut out with a margin.
@@ -51,6 +52,7 @@ struct ObjectView {
   double height_m = 0;                  ///< 99.5 % quantile above the support.
   std::vector<std::vector<Eigen::Vector2d>> neighbour_footprints;  ///< Convex outlines on the support plane of the other clusters, support frame.
   std::optional<WarmStart> warm_start;
+  bool unchanged = false;               ///< Within noise it looks as it did when it was fitted: that fit still holds.
 };
 
 }  // namespace gfp
