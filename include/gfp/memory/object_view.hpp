@@ -32,6 +32,7 @@ struct WarmStart {
   std::vector<double> modes;
   int unchanged_frames = 0;
   double cost = std::numeric_limits<double>::infinity();  ///< FitEvidence::cost of that fit: a warm fit that got worse is searched anew.
+  int fits = 0;                         ///< So far; every now and then one of them searches anew.
 };
 
 /// All that one object's fit may look at: a copy of its part of the frame, cut out with a margin.

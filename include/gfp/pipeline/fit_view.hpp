@@ -1,0 +1,27 @@
+#pragma once
+
+#include <vector>
+
+#include "gfp/core/error.hpp"
+#include "gfp/memory/object_view.hpp"
+#include "gfp/pipeline/pipeline_options.hpp"
+#include "gfp/pipeline/stage_timings.hpp"
+#include "gfp/primitive/primitive_library.hpp"
+#include "gfp/selection/select_models.hpp"
+
+namespace gfp {
+
+/// All that options.method has to say about one object: every fit that `selection` should choose from, never empty.
+///
+/// gfp_robust: recognise -> register every hypothesis -> contour of the best few placements (by registration cost), and a
+/// superquadric, which always competes. A view with a warm start tries that class (or the superquadric) alone, until
+/// its cost grows or budget.search_every fits are over. superquadric: that alone.
+/// Pure and single-threaded; `timings` takes the milliseconds of each stage where it is given.
+/// Errors: kNotFound for an unknown method, naming the known ones.
+Result<std::vector<Candidate>> fit_view(const ObjectView& view, const PrimitiveLibrary& library, const PipelineOptions& options = {},
+                                        StageTimings* timings = nullptr);
+
+/// Whether the view's last fit is to be followed, rather than all classes searched anew.
+bool is_tracked(const ObjectView& view, const FitBudgetOptions& options = {});
+
+}  // namespace gfp

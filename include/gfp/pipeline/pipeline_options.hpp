@@ -1,0 +1,57 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "gfp/cloud/depth_to_cloud.hpp"
+#include "gfp/cloud/estimate_normals.hpp"
+#include "gfp/core/error.hpp"
+#include "gfp/grasp/plan_grasps.hpp"
+#include "gfp/memory/associate.hpp"
+#include "gfp/modelling/model_contour.hpp"
+#include "gfp/recognition/recognise.hpp"
+#include "gfp/registration/register_primitive.hpp"
+#include "gfp/segmentation/segment_cloud.hpp"
+#include "gfp/selection/select_models.hpp"
+
+namespace gfp {
+
+/// How much work one object's fit may be.
+struct FitBudgetOptions {
+  int max_contours = 3;           ///< Placements, over all hypotheses, that get a contour: those of least cost.
+  int search_every = 30;          ///< Every so many fits of a tracked object all classes are searched again; 1: always.
+  double warm_cost_slack = 0.25;  ///< A tracked fit whose cost grew by more than this is searched again at once.
+};
+
+template <class Visitor>
+void visit_fields(FitBudgetOptions& o, Visitor&& field) {
+  field("max_contours", o.max_contours, 1, 64);
+  field("search_every", o.search_every, 1, 100'000);
+  field("warm_cost_slack", o.warm_cost_slack, 0.0, 100.0);
+}
+
+/// Every stage's options: the configuration's `pipeline` section.
+struct PipelineOptions {
+  std::string profile = "robust";
+  std::string method = "gfp_robust";
+  DepthToCloudOptions cloud;
+  EstimateNormalsOptions normals;
+  SegmentationOptions segmentation;
+  AssociateOptions memory;
+  RecognitionOptions recognition;
+  RegistrationOptions registration;
+  ModellingOptions modelling;
+  FitBudgetOptions budget;
+  SelectionOptions selection;
+  Gripper gripper;
+  PlanGraspsOptions grasp;
+};
+
+/// Names that PipelineOptions::profile and ::method may have, in the order in which they are listed to people.
+std::vector<std::string> profile_names();
+std::vector<std::string> method_names();
+
+/// Errors: kNotFound, naming an unknown profile or method and the known ones.
+Result<void> validate(const PipelineOptions& options);
+
+}  // namespace gfp

@@ -1,0 +1,151 @@
+#include "gfp/pipeline/process_frame.hpp"
+
+#include <oneapi/tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <utility>
+
+#include "gfp/pipeline/fit_view.hpp"
+#include "gfp/scene/remember.hpp"
+#include "pipeline/plan_scene_grasps.hpp"
+
+namespace gfp {
+namespace {
+
+std::vector<PixelRect> object_boxes(const Segments& segments) {
+  std::vector<PixelRect> boxes;
+  for (const Segment& segment : segments.segments) boxes.push_back(segment.bbox);
+  return boxes;
+}
+
+NormalMap object_normals(const OrganizedCloud& cloud, const Segments& segments, const EstimateNormalsOptions& options) {
+  if (segments.segments.empty()) return {};  // an empty region would mean the whole image
+  return estimate_normals(cloud, options, object_boxes(segments));
+}
+
+const Track* find_track(const SceneMemory& memory, std::uint64_t id) {
+  for (const Track& track : memory.tracks)
+    if (track.id == id) return &track;
+  return nullptr;
+}
+
+/// One object on its way through the stages; `candidates` stay empty where nothing could be fitted.
+struct Work {
+  const ObjectView* view = nullptr;
+  const SceneObject* before = nullptr;  ///< As last published, where it is known.
+  std::vector<Candidate> candidates;
+  StageTimings timings;
+  SceneObject object;
+
+  bool unchanged() const { return view->unchanged && before; }
+};
+
+std::vector<Work> plan_work(const std::vector<ObjectView>& views, const SceneMemory& memory) {
+  std::vector<Work> work(views.size());
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    const Track* track = find_track(memory, views[i].id);
+    work[i].view = &views[i];
+    work[i].before = track ? track->object.get() : nullptr;
+  }
+  return work;
+}
+
+void fit(Work& work, const PrimitiveLibrary& library, const PipelineOptions& options) {
+  if (work.unchanged()) {
+    work.candidates = {{work.before->model, 0.0}};
+  } else if (auto candidates = fit_view(*work.view, library, options, &work.timings)) {
+    work.candidates = std::move(*candidates);
+  }
+}
+
+/// Takes what has no fit out of the work, and says why.
+std::vector<RejectedSegment> reject_unfitted(std::vector<Work>& work) {
+  std::vector<RejectedSegment> rejected;
+  for (const Work& w : work)
+    if (w.candidates.empty()) rejected.push_back({w.view->object_pixels, "no_fit"});
+  std::erase_if(work, [](const Work& w) { return w.candidates.empty(); });
+  return rejected;
+}
+
+std::vector<ObjectEstimate> select(std::vector<Work>& work, const std::vector<ObjectView>& views, const SelectionOptions& options) {
+  std::vector<std::vector<Candidate>> candidates;
+  for (Work& w : work) candidates.push_back(std::move(w.candidates));
+  if (work.size() == views.size()) return select_models(views, std::move(candidates), options);
+  std::vector<ObjectView> fitted;  // rare: views are large
+  for (const Work& w : work) fitted.push_back(*w.view);
+  return select_models(fitted, std::move(candidates), options);
+}
+
+void finish(Work& work, ObjectEstimate estimate, const PipelineOptions& options) {
+  if (work.unchanged()) {
+    work.object = *work.before;
+    work.object.status = ObjectStatus::kUnchanged;
+    work.object.ms.clear();
+    return;
+  }
+  // A tracked fit looked at one class only, so what is known of the others is what was known before.
+  const bool followed = is_tracked(*work.view, options.budget) && work.before && work.before->model.class_name == estimate.model.class_name;
+  if (followed) estimate.class_probabilities = work.before->class_probabilities;
+  const ObjectStatus status = work.before ? ObjectStatus::kUpdated : ObjectStatus::kAdded;
+  work.object = work.timings.measure("describe", [&] { return describe(std::move(estimate), *work.view, status); });
+  work.object.ms = work.timings.ms();
+}
+
+/// Every segment as far as it gets: fitted in parallel, chosen jointly, described in parallel.
+std::vector<Work> estimate_objects(const std::vector<ObjectView>& views, const SceneMemory& memory, const PrimitiveLibrary& library,
+                                   const PipelineOptions& options, std::vector<RejectedSegment>& rejected, StageTimings& timings) {
+  std::vector<Work> work = plan_work(views, memory);
+  timings.measure("fit", [&] { oneapi::tbb::parallel_for(std::size_t{0}, work.size(), [&](std::size_t i) { fit(work[i], library, options); }); });
+  const std::vector<RejectedSegment> unfitted = reject_unfitted(work);
+  rejected.insert(rejected.end(), unfitted.begin(), unfitted.end());
+  auto estimates = timings.measure("selection", [&] { return select(work, views, options.selection); });
+  timings.measure("describe", [&] {
+    oneapi::tbb::parallel_for(std::size_t{0}, work.size(), [&](std::size_t i) { finish(work[i], std::move(estimates[i]), options); });
+  });
+  std::sort(work.begin(), work.end(), [](const Work& a, const Work& b) { return a.view->id < b.view->id; });
+  return work;
+}
+
+Scene empty_scene(const Frame& frame, const Segments& segments, const PipelineOptions& options) {
+  Scene scene;
+  scene.sensor = frame.sensor;
+  scene.sequence = frame.sequence;
+  scene.stamps = frame.stamps;
+  scene.camera = frame.camera;
+  scene.T_world_sensor = frame.T_world_sensor;
+  if (!segments.planes.empty()) scene.support = segments.planes.front();
+  scene.rejected = segments.rejected;
+  scene.profile = options.profile;
+  return scene;
+}
+
+void add_objects(Scene& scene, std::vector<Work> work, const Segments& segments, const OrganizedCloud& cloud, const PipelineOptions& options) {
+  std::vector<const ObjectView*> views;
+  for (Work& w : work) {
+    views.push_back(w.view);
+    scene.objects.push_back(std::move(w.object));
+  }
+  plan_scene_grasps(scene.objects, views, segments, cloud, !scene.lost.empty(), options);
+}
+
+}  // namespace
+
+PipelineResult process_frame(const Frame& frame, const SceneMemory& memory, const PrimitiveLibrary& library, const PipelineOptions& options) {
+  StageTimings timings;
+  const SupportPlane* last = memory.last_support ? &*memory.last_support : nullptr;
+  const auto cloud = timings.measure("cloud", [&] { return depth_to_cloud(frame.depth, frame.camera, options.cloud); });
+  const auto segments = timings.measure("segmentation", [&] { return segment_cloud(cloud, options.segmentation, frame.up_camera, last, frame.mask); });
+  const auto normals = timings.measure("normals", [&] { return object_normals(cloud, segments, options.normals); });
+  const auto views = timings.measure("association", [&] { return associate(segments, cloud, normals, frame, memory, options.memory); });
+
+  Scene scene = empty_scene(frame, segments, options);
+  scene.lost = lost_ids(memory, views, frame.sensor);
+  auto work = estimate_objects(views, memory, library, options, scene.rejected, timings);
+  timings.measure("grasps", [&] { add_objects(scene, std::move(work), segments, cloud, options); });
+  auto next = timings.measure("memory", [&] { return remember(scene, views, memory, options.memory); });
+  scene.ms = timings.ms();
+  return {std::move(scene), std::move(next)};
+}
+
+}  // namespace gfp

@@ -1,0 +1,106 @@
+#include "gfp/pipeline/fit_view.hpp"
+
+#include <gtest/gtest.h>
+
+#include "pipeline/stage_doubles.hpp"
+
+namespace gfp {
+namespace {
+
+using test::script;
+
+class FitView : public ::testing::Test {
+ protected:
+  FitView() { script().reset(); }
+
+  static ObjectView block_view() {
+    const auto scene = test::block_scene({{{40, 30, 80, 70}, 0.8}});
+    return associate(scene.segments, scene.cloud, scene.normals, scene.frame, {}).front();
+  }
+  static ObjectView tracked_view(const std::string& class_name, const std::string& method, double cost, int fits) {
+    ObjectView view = block_view();
+    view.warm_start = WarmStart{class_name, method, Transform::Identity(), Eigen::Vector3d::Ones(), {}, 0, cost, fits};
+    return view;
+  }
+
+  PrimitiveLibrary library = test::library_of({"bowl", "box", "can", "cup", "mug"});
+};
+
+// The contour is the dear part: the best three of five placements get one; the superquadric always competes.
+TEST_F(FitView, PrunesAfterRegistrationAndKeepsTheSuperquadric) {
+  script().cost_of_class = {{"bowl", 5}, {"box", 2}, {"can", 4}, {"cup", 1}, {"mug", 3}};
+  const auto candidates = fit_view(block_view(), library);
+  ASSERT_TRUE(candidates);
+  ASSERT_EQ(candidates->size(), 4U);
+  EXPECT_EQ((*candidates)[0].model.class_name, "cup");
+  EXPECT_EQ((*candidates)[1].model.class_name, "box");
+  EXPECT_EQ((*candidates)[2].model.class_name, "mug");
+  EXPECT_EQ((*candidates)[3].model.method, "superquadric");
+  EXPECT_EQ(script().registered, 5);
+  EXPECT_EQ(script().contoured, 3);
+}
+
+TEST_F(FitView, WithoutPrimitivesStillGivesAVolume) {
+  const auto candidates = fit_view(block_view(), PrimitiveLibrary());
+  ASSERT_EQ(candidates->size(), 1U);
+  EXPECT_EQ(candidates->front().model.method, "superquadric");
+}
+
+TEST_F(FitView, FollowsAKnownObjectWithoutASearch) {
+  script().cost_of_class["mug"] = 0.5;
+  const auto candidates = fit_view(tracked_view("mug", "gfp_robust", 0.5, 3), library);
+  ASSERT_EQ(candidates->size(), 1U);
+  EXPECT_EQ(candidates->front().model.class_name, "mug");
+  EXPECT_EQ(script().recognised, 0);
+  EXPECT_EQ(script().superquadrics, 0);
+}
+
+TEST_F(FitView, SearchesAnewWhenTheFitGotWorse) {
+  script().cost_of_class["mug"] = 2.0;
+  EXPECT_EQ(fit_view(tracked_view("mug", "gfp_robust", 0.5, 3), library)->size(), 4U);
+  EXPECT_EQ(script().recognised, 1);
+}
+
+TEST_F(FitView, SearchesAnewEveryNowAndThen) {
+  PipelineOptions options;
+  options.budget.search_every = 10;
+  for (int fits = 1; fits <= 20; ++fits) fit_view(tracked_view("mug", "gfp_robust", 1.0, fits), library, options);
+  EXPECT_EQ(script().recognised, 2);
+}
+
+TEST_F(FitView, SearchesAnewWhenThePrimitiveIsGone) {
+  EXPECT_EQ(fit_view(tracked_view("kettle", "gfp_robust", 1.0, 3), library)->size(), 4U);
+}
+
+TEST_F(FitView, FollowsASuperquadricAsOne) {
+  const auto candidates = fit_view(tracked_view("unknown", "superquadric", 1.0, 3), library);
+  ASSERT_EQ(candidates->size(), 1U);
+  EXPECT_EQ(candidates->front().model.method, "superquadric");
+  EXPECT_EQ(script().registered, 0);
+}
+
+TEST_F(FitView, MethodsAreFoundByNameAndUnknownOnesNameTheKnown) {
+  PipelineOptions options;
+  for (const std::string& method : method_names()) {
+    options.method = method;
+    EXPECT_TRUE(validate(options)) << method;
+    EXPECT_TRUE(fit_view(block_view(), library, options)) << method;
+  }
+  options.method = "guess";
+  for (const Error& error : {fit_view(block_view(), library, options).error(), validate(options).error()}) {
+    EXPECT_EQ(error.code, ErrorCode::kNotFound);
+    EXPECT_EQ(error.what, "method = guess, expected one of gfp_robust, superquadric");
+  }
+  options = {};
+  options.profile = "paperback";
+  EXPECT_EQ(validate(options).error().what, "profile = paperback, expected one of robust");
+}
+
+TEST_F(FitView, TimesItsStages) {
+  StageTimings timings;
+  fit_view(block_view(), library, {}, &timings);
+  for (const char* stage : {"recognition", "registration", "modelling", "superquadric"}) EXPECT_TRUE(timings.ms().contains(stage)) << stage;
+}
+
+}  // namespace
+}  // namespace gfp
