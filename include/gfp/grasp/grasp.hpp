@@ -34,13 +34,13 @@ void visit_fields(Gripper& o, Visitor&& field) {
   field("min_width_m", o.min_width_m, 0.0, 1.0);
   field("finger_length_m", o.finger_length_m, 0.001, 0.5);
   field("finger_width_m", o.finger_width_m, 0.001, 0.2);
-  field("finger_thickness_m", o.finger_thickness_m, 0.001, 0.2);
-  field("pad_depth_m", o.pad_depth_m, 0.0, 0.2);
+  field("finger_thickness_m", o.finger_thickness_m, 0.0005, 0.2);
+  field("pad_depth_m", o.pad_depth_m, 0.0, 0.5);
   field("palm_width_m", o.palm_width_m, 0.001, 1.0);
   field("palm_height_m", o.palm_height_m, 0.001, 1.0);
-  field("palm_depth_m", o.palm_depth_m, 0.0, 1.0);
+  field("palm_depth_m", o.palm_depth_m, 0.001, 1.0);
   field("friction", o.friction, 0.01, 5.0);
-  field("torsion_m", o.torsion_m, 0.0, 0.1);
+  field("torsion_m", o.torsion_m, 0.0001, 0.1);
   field("T_tcp_parent", o.T_tcp_parent);
 }
 
