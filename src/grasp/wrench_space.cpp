@@ -12,6 +12,12 @@
 
 namespace gfp {
 
+WrenchScale wrench_scale(const TriangleMesh& mesh) {
+  WrenchScale scale{volume_centroid(mesh), 0};
+  for (const Eigen::Vector3d& vertex : mesh.vertices) scale.radius_m = std::max(scale.radius_m, (vertex - scale.centre).norm());
+  return scale;
+}
+
 std::vector<Wrench> primitive_wrenches(std::span<const WrenchContact> contacts, const WrenchScale& scale, const WrenchSpaceOptions& options) {
   std::vector<Wrench> wrenches;
   for (const WrenchContact& contact : contacts) {

@@ -56,22 +56,31 @@ struct Grasp {
   Transform T_camera_parent = Transform::Identity();
   Transform T_camera_pregrasp_tcp = Transform::Identity();  ///< Where the straight approach starts.
   std::string gripper;
-  double width_m = 0;                 ///< Opening at the grasp: distance of the contacts.
+  double width_m = 0;                 ///< Opening at the grasp: distance of the contacts along the closing axis.
+  double opening_m = 0;               ///< Opening during the approach: width and clearance on both sides, at most the stroke.
   Eigen::Vector3d approach = Eigen::Vector3d::UnitX();      ///< Unit, camera frame.
   double epsilon = 0;                 ///< Ferrari-Canny, L1, exact; torque scaled by the bounding radius.
   double volume_quality = 0;          ///< Volume of the grasp wrench space.
   bool force_closure = false;
   double p_force_closure = 0;         ///< Under the shape's uncertainty.
   double epsilon_lcb = 0;             ///< 10 % quantile of epsilon under the shape's uncertainty.
-  std::array<GraspContact, 2> contacts;
-  double collision_margin_m = 0;      ///< Least distance of the gripper's boxes to table and neighbours; >= 0.
+  std::array<GraspContact, 2> contacts;  ///< The pad at +y of the tcp frame first.
+  /// Least distance of the gripper's boxes (the fingers with the gap they close through, the palm), over the whole straight
+  /// approach, to table, neighbours and obstacle points; >= 0, at most 0.2.
+  double collision_margin_m = 0;
   std::string visibility;             ///< `both`, `one` or `none` of the contacts were seen.
-  bool abstain = false;               ///< Too uncertain to execute.
+  Eigen::Vector3d helpful_view = Eigen::Vector3d::UnitZ();  ///< Unit, camera frame: looking along it shows the less certain contact head-on.
+  bool abstain = false;               ///< Too uncertain to execute: p_force_closure below PlanGraspsOptions::abstain_below_p.
   double score = 0;                   ///< What the list is ordered by.
 };
 
-/// Why an object has no grasp; empty where it has one: `too_wide`, `no_antipodal_pair`, `all_in_collision`,
-/// `not_force_closure`, `unreachable`, `not_planned`.
+/// Why an object has no grasp; empty where it has one:
+/// - `not_planned`: no grasps were asked for (or the work was shed);
+/// - `too_wide`: pairs of contacts oppose each other, all farther apart than the stroke less the clearance;
+/// - `no_antipodal_pair`: no two points oppose each other inside the friction cones;
+/// - `all_in_collision`: the gripper meets the object, the table or a neighbour in every pose;
+/// - `unreachable`: there are free poses, but something stands in every straight approach to them;
+/// - `not_force_closure`: in every free pose the closed pads hold with less than the least epsilon.
 struct GraspPlan {
   std::vector<Grasp> grasps;  ///< Best first.
   std::string no_grasp_reason;

@@ -4,6 +4,8 @@
 #include <span>
 #include <vector>
 
+#include "gfp/core/mesh.hpp"
+
 namespace gfp {
 
 /// One contact as the grasp wrench space sees it.
@@ -19,6 +21,9 @@ struct WrenchScale {
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();  ///< Same frame as the contacts.
   double radius_m = 1;                               ///< Torques are divided by it.
 };
+
+/// Centroid of the volume and the distance of the farthest vertex from it.
+WrenchScale wrench_scale(const TriangleMesh& mesh);
 
 struct WrenchSpaceOptions {
   int cone_edges = 8;   ///< Edges of the friction polygon, 3 to 64.

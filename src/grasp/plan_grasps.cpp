@@ -1,0 +1,235 @@
+#include "gfp/grasp/plan_grasps.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+
+#include "gfp/grasp/wrench_space.hpp"
+#include "grasp/close_jaw.hpp"
+#include "grasp/contact_candidates.hpp"
+#include "grasp/jaw_poses.hpp"
+#include "grasp/shape_uncertainty.hpp"
+#include "grasp/surroundings.hpp"
+
+namespace gfp {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kTightClearance = 0.4;    // share of the opening clearance where space is tight
+constexpr double kShallowDepth = 0.35;     // share of the pad depth where a finger would meet the table or the palm the object
+constexpr double kMarginLimit = 0.2;       // metres: collision_margin_m looks no farther
+constexpr int kMostChecks = 300;
+
+/// One pose that was closed on the fitted mesh.
+struct ClosedGrasp {
+  JawPose pose;  // centred on the touches
+  Transform T_camera_tcp;
+  double opening_m = 0;
+  std::array<PadTouch, 2> touches;  // tcp frame
+  GraspQuality quality;
+  ClosureStatistics closure;
+  double margin_m = 0, score = 0;
+};
+
+struct Outcomes {
+  bool approach_blocked = false, open = false;
+};
+
+class Planner {
+ public:
+  Planner(const FittedModel& model, const GraspScene& scene, const Gripper& gripper, const PlanGraspsOptions& options)
+      : model_(model), gripper_(gripper), options_(options), mesh_(model.mesh_camera()), normals_(triangle_normals(mesh_)),
+        bvh_(mesh_.vertices, mesh_.triangles), scale_(wrench_scale(mesh_)),
+        up_(scene.has_support ? Vector3d(scene.T_camera_support.linear().col(2)) : Vector3d(-scale_.centre.normalized())),
+        surroundings_(scene, scale_.centre, scale_.radius_m + reach()) {
+    for (const Triangle& triangle : mesh_.triangles) sigma_.push_back(sigma(triangle));
+  }
+
+  GraspPlan plan();
+
+ private:
+  double reach() const {
+    return gripper_.finger_length_m + gripper_.palm_depth_m + gripper_.palm_width_m + options_.pregrasp_offset_m + kMarginLimit;
+  }
+  float sigma(const Triangle& triangle) const;
+  bool observed(std::int32_t triangle) const;
+  std::optional<ClosedGrasp> try_pose(const JawPose& pose);
+  std::optional<ClosedGrasp> close_at(const JawPose& pose, double depth_m, double opening_m);
+  bool too_deep(const JawPose& pose);
+  bool object_in_way(const GripperBoxes& boxes) const;
+  bool free(const Transform& T_camera_tcp, double opening_m, double sweep_m);
+  void value(ClosedGrasp& grasp, const std::vector<ShapeDraw>& draws);
+  Grasp published(const ClosedGrasp& grasp) const;
+
+  const FittedModel& model_;
+  const Gripper& gripper_;
+  const PlanGraspsOptions& options_;
+  TriangleMesh mesh_;  // camera frame
+  std::vector<Vector3d> normals_;
+  TriangleBvh bvh_;
+  WrenchScale scale_;
+  Vector3d up_;
+  Surroundings surroundings_;
+  std::vector<float> sigma_;  // per triangle
+  Outcomes outcomes_;
+  std::vector<Crossing> crossings_;
+};
+
+float Planner::sigma(const Triangle& triangle) const {
+  if (model_.sigma_m.size() != mesh_.vertices.size()) return 0;
+  float sum = 0;
+  for (const std::int32_t v : triangle) sum += model_.sigma_m[static_cast<std::size_t>(v)];
+  return sum / 3.0F;
+}
+
+bool Planner::observed(std::int32_t triangle) const {
+  if (model_.states.size() != mesh_.vertices.size()) return false;
+  int seen = 0;
+  for (const std::int32_t v : mesh_.triangles[static_cast<std::size_t>(triangle)])
+    seen += (model_.states[static_cast<std::size_t>(v)] & kVertexObserved) != 0 ? 1 : 0;
+  return seen >= 2;
+}
+
+/// Whether the fingers are too short: the object itself stands where the palm would come, straight behind the contacts.
+bool Planner::too_deep(const JawPose& pose) {
+  const double longest = gripper_.finger_length_m - kShallowDepth * gripper_.pad_depth_m;
+  bvh_.crossings(pose.middle, -pose.approach, 4 * scale_.radius_m, crossings_);
+  return !crossings_.empty() && crossings_.back().distance_m > longest;
+}
+
+bool Planner::object_in_way(const GripperBoxes& boxes) const {
+  return bvh_.meets(boxes.palm) || bvh_.meets(boxes.fingers[0]) || bvh_.meets(boxes.fingers[1]);
+}
+
+bool Planner::free(const Transform& T_camera_tcp, double opening_m, double sweep_m) {
+  const GripperBoxes boxes = gripper_boxes(gripper_, T_camera_tcp, opening_m, sweep_m);
+  return !surroundings_.below_support(boxes, options_.scene_clearance_m) && !object_in_way(boxes) &&
+         !surroundings_.blocks(boxes, options_.scene_clearance_m);
+}
+
+std::optional<ClosedGrasp> Planner::try_pose(const JawPose& pose) {
+  for (const double depth_share : {1.0, kShallowDepth})
+    for (const double clearance_share : {1.0, kTightClearance}) {
+      const double opening_m = pose.width_m + 2 * clearance_share * options_.opening_clearance_m;
+      if (opening_m > gripper_.stroke_m) continue;
+      if (auto grasp = close_at(pose, depth_share * gripper_.pad_depth_m, opening_m)) return grasp;
+    }
+  return std::nullopt;
+}
+
+std::optional<ClosedGrasp> Planner::close_at(const JawPose& pose, double depth_m, double opening_m) {
+  ClosedGrasp grasp{pose, tcp_frame(pose, depth_m), opening_m, {}, {}, {}};
+  if (!free(grasp.T_camera_tcp, opening_m, options_.pregrasp_offset_m)) {
+    outcomes_.approach_blocked = outcomes_.approach_blocked || free(grasp.T_camera_tcp, opening_m, 0);
+    return std::nullopt;
+  }
+  const auto touches = close_jaw(mesh_, bvh_, gripper_, grasp.T_camera_tcp, opening_m);
+  if (!touches) return std::nullopt;
+  grasp.touches = *touches;
+  // Centre the jaw between the touches, so that both pads arrive together.
+  const double off_centre = 0.5 * (grasp.touches[0].point.y() + grasp.touches[1].point.y());
+  for (PadTouch& touch : grasp.touches) touch.point.y() -= off_centre;
+  grasp.pose.middle += off_centre * pose.axis;
+  grasp.pose.width_m = grasp.touches[0].point.y() - grasp.touches[1].point.y();
+  grasp.T_camera_tcp = tcp_frame(grasp.pose, depth_m);
+  if (std::abs(off_centre) > 1e-4 && !free(grasp.T_camera_tcp, opening_m, options_.pregrasp_offset_m)) return std::nullopt;
+
+  std::array<WrenchContact, 2> contacts;
+  for (std::size_t i = 0; i < 2; ++i)
+    contacts[i] = {grasp.T_camera_tcp * grasp.touches[i].point, grasp.T_camera_tcp.linear() * grasp.touches[i].normal, gripper_.friction, gripper_.torsion_m};
+  grasp.quality = grasp_quality(contacts, scale_);
+  if (grasp.quality.epsilon < options_.min_epsilon || !grasp.quality.force_closure) {
+    outcomes_.open = true;
+    return std::nullopt;
+  }
+  return grasp;
+}
+
+void Planner::value(ClosedGrasp& grasp, const std::vector<ShapeDraw>& draws) {
+  const JawLine jaw{grasp.pose.middle, grasp.pose.axis, grasp.opening_m};
+  grasp.closure = closure_statistics(jaw, draws, bvh_, normals_, sigma_, gripper_.friction, gripper_.torsion_m, scale_, options_.min_epsilon);
+  grasp.margin_m = surroundings_.distance(gripper_boxes(gripper_, grasp.T_camera_tcp, grasp.opening_m, options_.pregrasp_offset_m), kMarginLimit);
+  // No jaw of this kind can do better than the torsional reach of its own pads.
+  const double best_epsilon = gripper_.friction * gripper_.torsion_m / scale_.radius_m;
+  const double seen = 0.5 * (observed(grasp.touches[0].triangle) + observed(grasp.touches[1].triangle));
+  const double merit = 0.35 * std::min(1.0, grasp.closure.epsilon_lcb / best_epsilon) + 0.35 * std::max(0.0, -grasp.pose.approach.dot(up_)) +
+                       0.15 * seen + 0.15 * std::min(1.0, grasp.margin_m / 0.02);
+  grasp.score = grasp.closure.p_force_closure * (0.4 + 0.6 * merit);
+}
+
+Grasp Planner::published(const ClosedGrasp& closed) const {
+  Grasp grasp;
+  grasp.T_camera_tcp = closed.T_camera_tcp;
+  grasp.T_camera_parent = closed.T_camera_tcp * gripper_.T_tcp_parent;
+  grasp.T_camera_pregrasp_tcp = closed.T_camera_tcp * Eigen::Translation3d(-options_.pregrasp_offset_m, 0, 0);
+  grasp.gripper = gripper_.name;
+  grasp.width_m = closed.pose.width_m;
+  grasp.opening_m = closed.opening_m;
+  grasp.approach = closed.pose.approach;
+  grasp.epsilon = closed.quality.epsilon;
+  grasp.volume_quality = closed.quality.volume;
+  grasp.force_closure = closed.quality.force_closure;
+  grasp.p_force_closure = closed.closure.p_force_closure;
+  grasp.epsilon_lcb = closed.closure.epsilon_lcb;
+  grasp.collision_margin_m = closed.margin_m;
+  grasp.score = closed.score;
+  int seen = 0;
+  double largest_sigma = -1;
+  for (std::size_t i = 0; i < 2; ++i) {
+    const PadTouch& touch = closed.touches[i];
+    grasp.contacts[i] = {closed.T_camera_tcp * touch.point, closed.T_camera_tcp.linear() * touch.normal, observed(touch.triangle)};
+    seen += grasp.contacts[i].observed ? 1 : 0;
+    const double uncertainty = sigma_[static_cast<std::size_t>(touch.triangle)] + (grasp.contacts[i].observed ? 0.0 : 1.0);
+    if (uncertainty > largest_sigma) {
+      largest_sigma = uncertainty;
+      grasp.helpful_view = grasp.contacts[i].normal;
+    }
+  }
+  grasp.visibility = std::array{"none", "one", "both"}[static_cast<std::size_t>(seen)];
+  grasp.abstain = grasp.p_force_closure < options_.abstain_below_p + (seen == 0 ? 0.2 : 0.0);
+  return grasp;
+}
+
+GraspPlan Planner::plan() {
+  const double widest_m = gripper_.stroke_m - 2 * kTightClearance * options_.opening_clearance_m;
+  const PairSearch search = find_antipodal_pairs(model_, mesh_, normals_, bvh_, gripper_.friction, gripper_.min_width_m, widest_m, options_);
+  if (search.pairs.empty()) return {{}, search.too_wide > 0 ? "too_wide" : "no_antipodal_pair"};
+
+  const auto wanted = static_cast<std::size_t>(options_.max_grasps);
+  std::vector<ClosedGrasp> closed;
+  JawPoseQueue queue(search.pairs, scale_, up_, options_.approach_angles);
+  for (int checks = 0; closed.size() < 2 * wanted && checks < kMostChecks;) {
+    const auto pose = queue.next();
+    if (!pose) break;
+    if (std::any_of(closed.begin(), closed.end(), [&](const ClosedGrasp& other) { return alike(*pose, other.pose, 0.010, 0.94); })) continue;
+    if (too_deep(*pose)) continue;
+    ++checks;
+    if (auto grasp = try_pose(*pose)) closed.push_back(*grasp);
+  }
+  if (closed.empty()) return {{}, outcomes_.open ? "not_force_closure" : outcomes_.approach_blocked ? "unreachable" : "all_in_collision"};
+
+  const std::vector<ShapeDraw> draws = draw_shapes(model_, options_.uncertainty_samples, options_.seed);
+  for (ClosedGrasp& grasp : closed) value(grasp, draws);
+  std::stable_sort(closed.begin(), closed.end(), [](const ClosedGrasp& a, const ClosedGrasp& b) { return a.score > b.score; });
+  GraspPlan plan;
+  std::vector<JawPose> taken;
+  for (const ClosedGrasp& grasp : closed) {
+    if (plan.grasps.size() == wanted) break;
+    if (std::any_of(taken.begin(), taken.end(), [&](const JawPose& other) { return alike(grasp.pose, other, 0.015, 0.906); })) continue;
+    taken.push_back(grasp.pose);
+    plan.grasps.push_back(published(grasp));
+  }
+  return plan;
+}
+
+}  // namespace
+
+GraspPlan plan_grasps(const FittedModel& model, const GraspScene& scene, const Gripper& gripper, const PlanGraspsOptions& options) {
+  if (options.max_grasps == 0) return {{}, "not_planned"};
+  if (model.vertices.empty() || model.topology->triangles.empty()) return {{}, "no_antipodal_pair"};
+  return Planner(model, scene, gripper, options).plan();
+}
+
+}  // namespace gfp
