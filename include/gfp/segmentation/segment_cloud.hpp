@@ -7,13 +7,16 @@
 
 namespace gfp {
 
-/// Extended by whoever writes the stage; every member documented, bounded in visit_fields and used.
+/// What counts as a support, as an object and as near enough.
 struct SegmentationOptions {
-  double plane_inlier_m = 0.010;       ///< Half thickness of a support plane at 1 m; grows with the sensor noise.
-  double cluster_tolerance_m = 0.010;  ///< Points of one object are no farther apart than this (plus what the pixel pitch demands).
+  double plane_inlier_m = 0.010;       ///< Greatest half thickness of a support plane at 1 m (times z^2 elsewhere); the noise that the plane shows decides below that.
+  double cluster_tolerance_m = 0.010;  ///< Neighbouring pixels of one object differ by less in depth at 1 m and nearer (times z^2 beyond); gaps without readings are bridged as far.
+  double edge_margin_m = 0.02;         ///< Objects may stand out over the edge of the seen surface by this much.
   int min_points = 300;                ///< Smaller clusters are rejected (`too_small`).
-  double min_height_m = 0.012;         ///< Flatter clusters are rejected (`too_flat`).
-  double max_size_m = 0.60;            ///< Larger clusters are rejected (`too_large`).
+  double min_height_m = 0.010;         ///< Flatter clusters are rejected (`too_flat`).
+  double max_height_m = 0.60;          ///< Nothing higher above its support belongs to an object.
+  double max_size_m = 0.60;            ///< Larger clusters are rejected (`too_large`); level surfaces up to this size are faces of objects.
+  double max_depth_m = 4.0;            ///< Farther readings are not looked at.
   int max_segments = 128;              ///< The largest are kept.
 };
 
@@ -21,9 +24,12 @@ template <class Visitor>
 void visit_fields(SegmentationOptions& o, Visitor&& field) {
   field("plane_inlier_m", o.plane_inlier_m, 0.001, 0.05);
   field("cluster_tolerance_m", o.cluster_tolerance_m, 0.001, 0.1);
+  field("edge_margin_m", o.edge_margin_m, 0.0, 0.2);
   field("min_points", o.min_points, 10, 100'000);
   field("min_height_m", o.min_height_m, 0.0, 0.2);
+  field("max_height_m", o.max_height_m, 0.02, 3.0);
   field("max_size_m", o.max_size_m, 0.02, 3.0);
+  field("max_depth_m", o.max_depth_m, 0.2, 30.0);
   field("max_segments", o.max_segments, 1, 1000);
 }
 

@@ -37,7 +37,7 @@ struct RejectedSegment {
 
 struct Segments {
   int width = 0, height = 0;
-  std::vector<SupportPlane> planes;         ///< Largest first; may be empty (an empty list is a result).
+  std::vector<SupportPlane> planes;         ///< The one that carries most object pixels first, then by size; may be empty (a result).
   std::vector<Segment> segments;            ///< By their first pixel, ascending.
   std::vector<RejectedSegment> rejected;
   /// One per pixel: -1 unassigned, 0.. = index into segments, kPlaneLabel - k = lies on plane k.

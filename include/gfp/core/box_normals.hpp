@@ -1,0 +1,30 @@
+#pragma once
+
+#include "gfp/core/image.hpp"
+
+namespace gfp {
+
+/// A depth map with its rays, as raw planes: z in metres (NaN where there is no reading) and x = ray_x z, y = ray_y z.
+struct DepthPlanes {
+  int width = 0, height = 0;
+  const float *x = nullptr, *y = nullptr, *z = nullptr;
+  double fx = 0, fy = 0;
+  bool undistorted = true;  ///< ray_x = (u - cx) / fx and ray_y = (v - cy) / fy; else the rays' steps are taken from x, y and z.
+};
+
+struct BoxNormalsOptions {
+  int radius_px = 4;             ///< Half side of the box, [1, kMaxBoxRadius].
+  float max_depth_step = 0.02F;  ///< Readings that differ from the centre's by more than this share of its depth are another surface.
+};
+inline constexpr int kMaxBoxRadius = 20;
+
+/// Unit normals towards the camera for the pixels of `rect`, written to the planes nx, ny, nz (width x height of the whole
+/// image); NaN where the pixel has no reading or its surface fewer than six readings in the box.
+///
+/// A plane is linear in inverse depth, 1/z = a ray_x + b ray_y + c, with the normal along -(a, b, c). Where the box holds one
+/// whole surface, the slopes are least squares over all its pixels, by separable sums (moments of 1/z; the pixel coordinates'
+/// own moments are constants). Elsewhere they are least squares over every second pixel of the box that has a reading within
+/// `max_depth_step` of the centre's depth. Cost: about 5 ns a pixel.
+void box_normals(const DepthPlanes& depth, const BoxNormalsOptions& options, const PixelRect& rect, float* nx, float* ny, float* nz);
+
+}  // namespace gfp

@@ -1,0 +1,95 @@
+#include "segmentation/outline.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace gfp {
+namespace {
+
+constexpr int kBorderPx = 2;        // the outermost pixels of many sensors have no reading
+constexpr int kSearchPx = 24;       // an occluder's shadow without readings is this wide at most
+constexpr float kNearer = 0.015F;   // share of the depth by which an occluder is nearer
+
+PixelRect bounding_box(const std::vector<std::int32_t>& pixels, int width) {
+  PixelRect box{width, pixels.front() / width, 0, pixels.back() / width + 1};
+  for (const auto i : pixels) {
+    box.u0 = std::min(box.u0, i % width);
+    box.u1 = std::max(box.u1, i % width + 1);
+  }
+  return box;
+}
+
+// Whether, from an outline pixel, the first reading in this direction is another segment that is nearer.
+bool nearer_segment(const OrganizedCloud& cloud, const Image<std::int32_t>& labels, std::int32_t own, int u, int v, int du, int dv) {
+  const float z = cloud.z[labels.index(u, v)];
+  for (int step = 1; step <= kSearchPx; ++step) {
+    u += du;
+    v += dv;
+    if (!labels.contains(u, v)) return false;
+    const auto i = labels.index(u, v);
+    if (labels.pixels[i] == own) return false;
+    if (!cloud.valid(i)) continue;
+    return labels.pixels[i] >= 0 && cloud.z[i] < z * (1.0F - kNearer);
+  }
+  return false;
+}
+
+}  // namespace
+
+PixelRect readings_rect(const OrganizedCloud& cloud, const std::vector<std::uint8_t>& valid) {
+  PixelRect rect{cloud.width, cloud.height, 0, 0};
+  for (int v = 0; v < cloud.height; ++v) {
+    const auto* row = valid.data() + static_cast<std::ptrdiff_t>(v) * cloud.width;
+    const auto* end = row + cloud.width;
+    const auto* first = std::find_if(row, end, [](auto flag) { return flag != 0; });
+    if (first == end) continue;
+    const auto* last = end;
+    while (*(last - 1) == 0) --last;
+    rect = {std::min(rect.u0, static_cast<int>(first - row)), std::min(rect.v0, v), std::max(rect.u1, static_cast<int>(last - row)), v + 1};
+  }
+  return rect;
+}
+
+void describe_outline(const OrganizedCloud& cloud, const Image<std::int32_t>& labels, const PixelRect& readings,
+                      const FlatSurface* support, Segment& segment) {
+  const int width = cloud.width;
+  segment.bbox = bounding_box(segment.pixels, width);
+  const std::int32_t own = labels.pixels[static_cast<std::size_t>(segment.pixels.front())];
+  std::vector<float> heights;
+  heights.reserve(segment.pixels.size());
+  for (const auto i : segment.pixels) {
+    const Eigen::Vector3d p = cloud.point(static_cast<std::size_t>(i)).cast<double>();
+    heights.push_back(static_cast<float>(support != nullptr ? support->height(p) : -p.y()));
+  }
+  std::vector<float> sorted = heights;
+  const auto quantile = [&](double share) {
+    const auto nth = sorted.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(sorted.size() - 1));
+    std::nth_element(sorted.begin(), nth, sorted.end());
+    return *nth;
+  };
+  const float top = quantile(0.995), near_top = quantile(0.97), bottom = quantile(0.005);
+  segment.height_m = support != nullptr ? top : top - bottom;
+
+  int cut = 0, top_pixels = 0, top_cut = 0, hidden = 0;
+  for (std::size_t k = 0; k < segment.pixels.size(); ++k) {
+    const int u = segment.pixels[k] % width, v = segment.pixels[k] / width;
+    const bool at_border = u < readings.u0 + kBorderPx || v < readings.v0 + kBorderPx || u >= readings.u1 - kBorderPx || v >= readings.v1 - kBorderPx;
+    bool is_hidden = false;
+    constexpr int kSteps[4][2] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}};
+    for (const auto& step : kSteps) {
+      const int nu = u + step[0], nv = v + step[1];
+      if (labels.contains(nu, nv) && labels.at(nu, nv) != own) is_hidden = is_hidden || nearer_segment(cloud, labels, own, u, v, step[0], step[1]);
+    }
+    cut += at_border;
+    hidden += is_hidden;
+    if (heights[k] >= near_top) {
+      ++top_pixels;
+      top_cut += at_border || is_hidden;
+    }
+  }
+  segment.touches_border = cut >= 3;
+  segment.occluded = hidden >= 5;
+  segment.top_cut = top_pixels > 0 && 10 * top_cut >= top_pixels;
+}
+
+}  // namespace gfp

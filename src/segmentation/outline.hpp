@@ -1,0 +1,17 @@
+#pragma once
+
+#include "gfp/cloud/organized_cloud.hpp"
+#include "gfp/segmentation/segments.hpp"
+#include "segmentation/supports.hpp"
+
+namespace gfp {
+
+/// The rectangle that holds every reading: outside it a sensor sees nothing at all.
+PixelRect readings_rect(const OrganizedCloud& cloud, const std::vector<std::uint8_t>& valid);
+
+/// Fills bbox, touches_border, occluded, top_cut and height_m from the pixels, the labels of all segments (index, negative
+/// for none) and the support (null where unknown: height is then the extent along the camera's y).
+void describe_outline(const OrganizedCloud& cloud, const Image<std::int32_t>& labels, const PixelRect& readings,
+                      const FlatSurface* support, Segment& segment);
+
+}  // namespace gfp

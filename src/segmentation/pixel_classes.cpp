@@ -1,0 +1,94 @@
+#include "segmentation/pixel_classes.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+namespace gfp {
+namespace {
+
+// A plane in floats for the loops below; the outline's edges as planes through which its prism is bounded.
+struct Kernel {
+  float up[3], camera_height, band, band_per_m2, max_height, margin;
+  std::uint8_t on, above;  // the class to give; 0: none
+};
+
+constexpr int kBlock = 32;
+constexpr float kMinDepth = 0.05F;  // metres: no sensor of ours reads nearer
+
+__attribute__((target_clones("arch=x86-64-v3", "default")))
+void mark_valid(const float* z, int count, float min_depth, float max_depth, std::uint8_t* classes) {
+  for (int i = 0; i < count; ++i) classes[i] = ((z[i] >= min_depth) & (z[i] <= max_depth)) ? kElsewhere : kInvalidPixel;
+}
+
+// Which of up to kBlock pixels are on (1) or above (2) the plane and still free; returns whether any is.
+__attribute__((target_clones("arch=x86-64-v3", "default")))
+bool near_plane(const float* x, const float* y, const float* z, const std::uint8_t* classes, int count, const Kernel& k, std::uint8_t* near) {
+  const float ux = k.up[0], uy = k.up[1], uz = k.up[2], offset = k.camera_height, band0 = k.band, band2 = k.band_per_m2, high = k.max_height;
+  std::int32_t any = 0;
+  for (int i = 0; i < count; ++i) {
+    const float height = ux * x[i] + uy * y[i] + uz * z[i] + offset;
+    const float band = band0 + band2 * z[i] * z[i];
+    const std::int32_t on = (height >= -band) & (height <= band), above = (height > band) & (height <= high);
+    const std::int32_t free = classes[i] == kElsewhere;
+    const std::int32_t value = (on + 2 * above) * free;
+    near[i] = static_cast<std::uint8_t>(value);
+    any |= value;
+  }
+  return any != 0;
+}
+
+__attribute__((target_clones("arch=x86-64-v3", "default")))
+void clear_outside(const float* x, const float* y, const float* z, int count, float ex, float ey, float ez, float offset, std::uint8_t* near) {
+  for (int i = 0; i < count; ++i) {
+    const std::int32_t inside = ex * x[i] + ey * y[i] + ez * z[i] + offset >= 0.0F;
+    near[i] = static_cast<std::uint8_t>(near[i] * inside);
+  }
+}
+
+__attribute__((target_clones("arch=x86-64-v3", "default")))
+void assign(const std::uint8_t* near, int count, std::uint8_t on, std::uint8_t above, std::uint8_t* classes) {
+  for (int i = 0; i < count; ++i) {
+    const std::uint8_t value = near[i] == 1 ? on : above;
+    classes[i] = (near[i] != 0) & (value != 0) ? value : classes[i];
+  }
+}
+
+void apply(const OrganizedCloud& cloud, const FlatSurface& surface, const Kernel& kernel, std::vector<std::uint8_t>& classes) {
+  std::uint8_t near[kBlock];
+  const int pixels = static_cast<int>(classes.size());
+  for (int i = 0; i < pixels; i += kBlock) {
+    const int count = std::min(kBlock, pixels - i);
+    const float *x = &cloud.x[static_cast<std::size_t>(i)], *y = &cloud.y[static_cast<std::size_t>(i)], *z = &cloud.z[static_cast<std::size_t>(i)];
+    if (!near_plane(x, y, z, &classes[static_cast<std::size_t>(i)], count, kernel, near)) continue;
+    for (std::size_t e = 0; e < surface.edges.size(); ++e) {
+      const Eigen::Vector3f edge = surface.edges[e].cast<float>();
+      clear_outside(x, y, z, count, edge.x(), edge.y(), edge.z(), static_cast<float>(surface.edge_offsets_m[e]) + kernel.margin, near);
+    }
+    assign(near, count, kernel.on, kernel.above, &classes[static_cast<std::size_t>(i)]);
+  }
+}
+
+Kernel kernel_of(const FlatSurface& surface, double max_height_m, double margin_m, int on, int above) {
+  const Eigen::Vector3f up = surface.up.cast<float>();
+  return {{up.x(), up.y(), up.z()}, static_cast<float>(surface.camera_height_m), static_cast<float>(surface.band_m),
+          static_cast<float>(surface.band_per_m2), static_cast<float>(max_height_m), static_cast<float>(margin_m),
+          static_cast<std::uint8_t>(on), static_cast<std::uint8_t>(above)};
+}
+
+}  // namespace
+
+std::vector<std::uint8_t> classify_pixels(const OrganizedCloud& cloud, const Supports& supports, const SegmentationOptions& options) {
+  std::vector<std::uint8_t> classes(cloud.size());
+  mark_valid(cloud.z.data(), static_cast<int>(cloud.size()), kMinDepth, static_cast<float>(options.max_depth_m), classes.data());
+  for (const FlatSurface& wall : supports.walls) apply(cloud, wall, kernel_of(wall, 0.0, options.edge_margin_m, kWall, 0), classes);
+  std::vector<std::size_t> order(supports.surfaces.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](auto a, auto b) { return supports.surfaces[a].camera_height_m < supports.surfaces[b].camera_height_m; });
+  for (const auto k : order) {
+    const int index = static_cast<int>(k);
+    apply(cloud, supports.surfaces[k], kernel_of(supports.surfaces[k], options.max_height_m, options.edge_margin_m, kOnSupport + index, kAbove + index), classes);
+  }
+  return classes;
+}
+
+}  // namespace gfp

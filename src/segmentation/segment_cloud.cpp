@@ -1,0 +1,178 @@
+#include "gfp/segmentation/segment_cloud.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "segmentation/components.hpp"
+#include "segmentation/outline.hpp"
+#include "segmentation/pixel_classes.hpp"
+#include "segmentation/supports.hpp"
+
+namespace gfp {
+namespace {
+
+constexpr int kWorthNaming = 60;  // pixels: fewer are noise that nobody wants to read about
+
+struct Candidate {
+  PixelList pixels;
+  int support = -1;
+};
+
+// Where the points lie, in the support's frame (camera frame where there is none).
+Eigen::Vector3d extents(const OrganizedCloud& cloud, const PixelList& pixels, const Transform& T_frame_camera) {
+  Eigen::Vector3d low = Eigen::Vector3d::Constant(1e9), high = -low;
+  for (const auto i : pixels) {
+    const Eigen::Vector3d p = T_frame_camera * cloud.point(static_cast<std::size_t>(i)).cast<double>();
+    low = low.cwiseMin(p);
+    high = high.cwiseMax(p);
+  }
+  return high - low;
+}
+
+// Empty: an object. Else the reason why not.
+std::string reject_reason(const OrganizedCloud& cloud, const Supports& supports, const SegmentationOptions& options, const Candidate& candidate) {
+  if (static_cast<int>(candidate.pixels.size()) < options.min_points) return "too_small";
+  const FlatSurface* support = candidate.support < 0 ? nullptr : &supports.surfaces[static_cast<std::size_t>(candidate.support)];
+  const Transform T_support_camera = support == nullptr ? Transform::Identity() : supports.planes[static_cast<std::size_t>(candidate.support)].T_camera_support.inverse();
+  const Eigen::Vector3d size = extents(cloud, candidate.pixels, T_support_camera);
+  if (size.head<2>().maxCoeff() > options.max_size_m) return "too_large";
+  if (support == nullptr) return {};
+
+  std::vector<float> heights;
+  int outside = 0;
+  for (const auto i : candidate.pixels) {
+    const Eigen::Vector3d p = cloud.point(static_cast<std::size_t>(i)).cast<double>();
+    heights.push_back(static_cast<float>(support->height(p)));
+    outside += support->inside(p) < 0;
+  }
+  const auto nth = heights.begin() + static_cast<std::ptrdiff_t>(0.95 * static_cast<double>(heights.size()));
+  std::nth_element(heights.begin(), nth, heights.end());
+  if (*nth < options.min_height_m) return "too_flat";
+  if (2 * outside > static_cast<int>(candidate.pixels.size())) return "outside_workspace";
+  return {};
+}
+
+// The supports in the order of the result: the one that carries most pixels of objects first, then by size.
+std::vector<int> support_order(const Supports& supports, const std::vector<Candidate>& taken) {
+  std::vector<std::size_t> carried(supports.planes.size(), 0);
+  for (const Candidate& candidate : taken)
+    if (candidate.support >= 0) carried[static_cast<std::size_t>(candidate.support)] += candidate.pixels.size();
+  std::vector<int> order(supports.planes.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(), [&](int a, int b) {
+    const auto i = static_cast<std::size_t>(a), j = static_cast<std::size_t>(b);
+    return carried[i] != carried[j] ? carried[i] > carried[j] : supports.planes[i].inliers > supports.planes[j].inliers;
+  });
+  return order;
+}
+
+void label_pixels(const std::vector<std::uint8_t>& classes, const std::vector<int>& rank, const std::vector<Candidate>& taken, Image<std::int32_t>& labels) {
+  for (std::size_t i = 0; i < classes.size(); ++i)
+    if (classes[i] >= kOnSupport && classes[i] < kAbove) labels.pixels[i] = Segments::kPlaneLabel - rank[static_cast<std::size_t>(classes[i] - kOnSupport)];
+  for (std::size_t k = 0; k < taken.size(); ++k)
+    for (const auto i : taken[k].pixels) labels.pixels[static_cast<std::size_t>(i)] = static_cast<std::int32_t>(k);
+}
+
+// The user's own mask: its readings are the one segment.
+PixelList masked_pixels(const std::vector<std::uint8_t>& valid, const Image<std::uint8_t>& mask) {
+  PixelList pixels;
+  for (std::size_t i = 0; i < valid.size(); ++i)
+    if (valid[i] != 0 && mask.pixels[i] != 0) pixels.push_back(static_cast<std::int32_t>(i));
+  return pixels;
+}
+
+// The support that the pixels stand on: the highest one that is below (almost) all of them, and under most of them.
+int support_of(const OrganizedCloud& cloud, const Supports& supports, const PixelList& pixels) {
+  int best = -1;
+  double best_base = std::numeric_limits<double>::infinity();
+  const std::size_t step = std::max<std::size_t>(1, pixels.size() / 500);
+  for (std::size_t k = 0; k < supports.surfaces.size(); ++k) {
+    const FlatSurface& surface = supports.surfaces[k];
+    std::vector<double> heights;
+    std::size_t inside = 0;
+    for (std::size_t i = 0; i < pixels.size(); i += step) {
+      const Eigen::Vector3d p = cloud.point(static_cast<std::size_t>(pixels[i])).cast<double>();
+      heights.push_back(surface.height(p));
+      inside += surface.inside(p) >= 0;
+    }
+    const auto low = heights.begin() + static_cast<std::ptrdiff_t>(heights.size() / 20);
+    std::nth_element(heights.begin(), low, heights.end());
+    const double base = *low < -0.01 || 2 * inside < heights.size() ? 10.0 + std::abs(*low) : *low;  // a poor one only if there is no other
+    if (base < best_base) {
+      best_base = base;
+      best = static_cast<int>(k);
+    }
+  }
+  return best;
+}
+
+std::vector<Candidate> clusters(const OrganizedCloud& cloud, const SegmentationOptions& options, const std::vector<std::uint8_t>& classes,
+                                const Supports& supports) {
+  const std::uint8_t lowest = supports.planes.empty() ? kElsewhere : kAbove, highest = supports.planes.empty() ? kElsewhere : 255;
+  std::vector<std::uint8_t> free(classes.size());
+  for (std::size_t i = 0; i < classes.size(); ++i) free[i] = classes[i] >= lowest && classes[i] <= highest;
+  std::vector<Candidate> candidates;
+  for (PixelList& pixels : connected_components(cloud, free, classes, {options.cluster_tolerance_m, options.cluster_tolerance_m}, kWorthNaming)) {
+    const int support = support_of(cloud, supports, pixels);
+    candidates.push_back({std::move(pixels), support});
+  }
+  return candidates;
+}
+
+void keep_largest(int count, std::vector<Candidate>& candidates, std::vector<RejectedSegment>& rejected) {
+  if (static_cast<int>(candidates.size()) <= count) return;
+  std::stable_sort(candidates.begin(), candidates.end(), [](const auto& a, const auto& b) { return a.pixels.size() > b.pixels.size(); });
+  for (std::size_t k = static_cast<std::size_t>(count); k < candidates.size(); ++k) rejected.push_back({static_cast<int>(candidates[k].pixels.size()), "too_many"});
+  candidates.resize(static_cast<std::size_t>(count));
+  std::sort(candidates.begin(), candidates.end(), [](const auto& a, const auto& b) { return a.pixels.front() < b.pixels.front(); });
+}
+
+}  // namespace
+
+Segments segment_cloud(const OrganizedCloud& cloud, const SegmentationOptions& options, const std::optional<Eigen::Vector3d>& up_camera,
+                       const SupportPlane* last, const Image<std::uint8_t>& mask) {
+  Segments result;
+  result.width = cloud.width;
+  result.height = cloud.height;
+  result.labels = Image<std::int32_t>(cloud.width, cloud.height, Segments::kUnassigned);
+  if (cloud.size() == 0) return result;
+
+  const Supports supports = find_supports(cloud, options, up_camera, last);
+  const auto classes = classify_pixels(cloud, supports, options);
+
+  std::vector<Candidate> taken;
+  if (mask.width == cloud.width && mask.height == cloud.height && !mask.empty()) {
+    taken.push_back({masked_pixels(classes, mask), -1});
+    if (taken.front().pixels.empty()) taken.clear();
+    else taken.front().support = support_of(cloud, supports, taken.front().pixels);
+  } else {
+    for (Candidate& candidate : clusters(cloud, options, classes, supports)) {
+      std::string reason = reject_reason(cloud, supports, options, candidate);
+      if (reason.empty()) taken.push_back(std::move(candidate));
+      else result.rejected.push_back({static_cast<int>(candidate.pixels.size()), std::move(reason)});
+    }
+    keep_largest(options.max_segments, taken, result.rejected);
+  }
+
+  const std::vector<int> order = support_order(supports, taken);
+  std::vector<int> rank(order.size());
+  for (std::size_t r = 0; r < order.size(); ++r) {
+    rank[static_cast<std::size_t>(order[r])] = static_cast<int>(r);
+    result.planes.push_back(supports.planes[static_cast<std::size_t>(order[r])]);
+  }
+  label_pixels(classes, rank, taken, result.labels);
+  const PixelRect readings = readings_rect(cloud, classes);
+  for (Candidate& candidate : taken) {
+    Segment segment;
+    segment.pixels = std::move(candidate.pixels);
+    const bool supported = candidate.support >= 0;
+    if (supported) segment.support = rank[static_cast<std::size_t>(candidate.support)];
+    describe_outline(cloud, result.labels, readings, supported ? &supports.surfaces[static_cast<std::size_t>(candidate.support)] : nullptr, segment);
+    result.segments.push_back(std::move(segment));
+  }
+  return result;
+}
+
+}  // namespace gfp
