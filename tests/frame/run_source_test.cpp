@@ -125,12 +125,5 @@ TEST(Backoff, DoublesUpToItsMaximumAndStartsAnew) {
   EXPECT_DOUBLE_EQ(backoff.next_s(), 0.5);
 }
 
-TEST(SourceOptions, NamesEveryFieldOnce) {
-  SourceOptions options;
-  std::vector<std::string> names;
-  visit_fields(options, [&](std::string_view name, auto&, auto, auto) { names.emplace_back(name); });
-  EXPECT_EQ(names, (std::vector<std::string>{"grab_timeout_s", "stalls_before_reopen", "reconnect.initial_s", "reconnect.max_s"}));
-}
-
 }  // namespace
 }  // namespace gfp

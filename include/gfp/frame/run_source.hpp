@@ -44,9 +44,7 @@ template <class Visitor>
 void visit_fields(SourceOptions& o, Visitor&& field) {
   field("grab_timeout_s", o.grab_timeout_s, 0.001, 60.0);
   field("stalls_before_reopen", o.stalls_before_reopen, 1, 1'000'000);
-  visit_fields(o.reconnect, [&](std::string_view name, auto& value, auto low, auto high) {
-    field(name == "initial_s" ? "reconnect.initial_s" : "reconnect.max_s", value, low, high);
-  });
+  field.section("reconnect", o.reconnect);
 }
 
 /// The life of one source, on the caller's thread: opens, grabs and hands over until `stop` is requested, the stream ends

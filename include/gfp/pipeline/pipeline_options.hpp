@@ -47,6 +47,23 @@ struct PipelineOptions {
   PlanGraspsOptions grasp;
 };
 
+template <class Visitor>
+void visit_fields(PipelineOptions& o, Visitor&& field) {
+  field("profile", o.profile);
+  field("method", o.method);
+  field.section("cloud", o.cloud);
+  field.section("normals", o.normals);
+  field.section("segmentation", o.segmentation);
+  field.section("memory", o.memory);
+  field.section("recognition", o.recognition);
+  field.section("registration", o.registration);
+  field.section("modelling", o.modelling);
+  field.section("budget", o.budget);
+  field.section("selection", o.selection);
+  field.section("gripper", o.gripper);
+  field.section("grasp", o.grasp);
+}
+
 /// Names that PipelineOptions::profile and ::method may have, in the order in which they are listed to people.
 std::vector<std::string> profile_names();
 std::vector<std::string> method_names();

@@ -17,6 +17,7 @@ struct RecognitionOptions {
 template <class Visitor>
 void visit_fields(RecognitionOptions& o, Visitor&& field) {
   field("max_hypotheses", o.max_hypotheses, 1, 64);
+  field("only_class", o.only_class);
 }
 
 /// The classes worth a fit, most probable first, each with the stable poses worth a try.

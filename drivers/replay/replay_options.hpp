@@ -1,0 +1,31 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "gfp/core/sensor_noise.hpp"
+#include "gfp/frame/camera_file.hpp"
+
+namespace gfp {
+
+struct ReplayOptions {
+  std::string sensor = "replay";        ///< Name of the source, as in topics.
+  double rate_hz = 30;                  ///< Frames a second; 0: as fast as they are taken.
+  bool loop = false;                    ///< Starts over at the end, stamps go on rising.
+  int step = 1;                         ///< Every so many-th frame is played.
+  bool frame_time = false;              ///< Deterministic mode: the host stamps are the sensor's, no clock is read.
+  std::string axes;                     ///< Of clouds, as parse_axes() reads them; empty: found from the cloud.
+  std::optional<double> depth_scale_m;  ///< Metres per unit of 16-bit depth; wins over the camera file and the format.
+  std::optional<CameraFile> camera;     ///< Wins over what the files say.
+  SensorNoise noise;                    ///< Of the sensor that took the recording.
+};
+
+/// The numeric members; `sensor`, `axes` and the camera are named by whoever reads the configuration.
+template <class Visitor>
+void visit_fields(ReplayOptions& o, Visitor&& field) {
+  field("rate_hz", o.rate_hz, 0.0, 1000.0);
+  field("loop", o.loop, false, true);
+  field("step", o.step, 1, 1'000'000);
+}
+
+}  // namespace gfp

@@ -1,0 +1,115 @@
+#include "config/daemon_options.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include "config/field_loader.hpp"
+#include "config/field_writer.hpp"
+#include "config/yaml_document.hpp"
+
+namespace gfp {
+namespace {
+
+bool is_topic_word(std::string_view name) {
+  return !name.empty() && name.size() <= 64 &&
+         std::all_of(name.begin(), name.end(), [](char c) { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_'; });
+}
+
+Result<void> validate_sensors(const std::vector<SensorConfig>& sensors) {
+  std::set<std::string> names;
+  for (std::size_t i = 0; i < sensors.size(); ++i) {
+    const std::string& name = sensors[i].name;
+    if (!is_topic_word(name))
+      return failure(ErrorCode::kInvalidArgument, fmt::format("sensors.{}.name = {}, expected 1 to 64 of a-z, 0-9 and _", i, name));
+    if (!names.insert(name).second)
+      return failure(ErrorCode::kInvalidArgument, fmt::format("sensors.{}.name = {}, expected a name no other sensor has", i, name));
+  }
+  return {};
+}
+
+Result<void> validate_endpoints(const char* key, const std::vector<std::string>& endpoints, bool insecure) {
+  for (const std::string& endpoint : endpoints) {
+    const bool ipc = endpoint.starts_with("ipc://"), inproc = endpoint.starts_with("inproc://"), tcp = endpoint.starts_with("tcp://");
+    if (!ipc && !inproc && !tcp)
+      return failure(ErrorCode::kInvalidArgument, fmt::format("publish.{} = {}, expected ipc://, inproc:// or tcp://", key, endpoint));
+    if (tcp && !insecure)
+      return failure(ErrorCode::kInvalidArgument,
+                     fmt::format("publish.{} = {}, expected ipc:// (tcp is neither encrypted nor authenticated: allow it with "
+                                 "publish.insecure = true or --insecure)", key, endpoint));
+  }
+  return {};
+}
+
+/// A scalar or flow value at a dotted path, as the document that would say the same.
+Result<YAML::Node> document_of_setting(const std::string& setting) {
+  const std::size_t equals = setting.find('=');
+  if (equals == 0 || equals == std::string::npos)
+    return failure(ErrorCode::kInvalidArgument, fmt::format("--set {}: expected path.to.key=value", setting.substr(0, 80)));
+  auto value = config::parse_yaml(std::string_view(setting).substr(equals + 1), "--set " + setting.substr(0, 80));
+  if (!value) return value;
+  YAML::Node node = *value;
+  if (node.IsNull()) node = YAML::Node("");
+  std::string path = setting.substr(0, equals);
+  if (std::count(path.begin(), path.end(), '.') >= config::kMaxDepth)
+    return failure(ErrorCode::kTooLarge, fmt::format("--set: a path of more than {} keys", config::kMaxDepth));
+  while (true) {
+    const std::size_t dot = path.rfind('.');
+    YAML::Node outer(YAML::NodeType::Map);
+    outer.force_insert(dot == std::string::npos ? path : path.substr(dot + 1), node);
+    node.reset(outer);  // operator= would change what `outer` holds
+    if (dot == std::string::npos) return node;
+    path.resize(dot);
+  }
+}
+
+}  // namespace
+
+Result<void> validate(const DaemonOptions& options) {
+  if (Result<void> valid = validate_sensors(options.sensors); !valid) return valid;
+  if (Result<void> valid = validate_endpoints("sensor_endpoints", options.publish.sensor_endpoints, options.publish.insecure); !valid) return valid;
+  if (Result<void> valid = validate_endpoints("state_endpoints", options.publish.state_endpoints, options.publish.insecure); !valid) return valid;
+  const auto& cloud = options.pipeline.cloud;
+  if (cloud.min_depth_m >= cloud.max_depth_m)
+    return failure(ErrorCode::kInvalidArgument,
+                   fmt::format("pipeline.cloud.min_depth_m = {}, expected less than max_depth_m = {}", cloud.min_depth_m, cloud.max_depth_m));
+  return {};
+}
+
+}  // namespace gfp
+
+namespace gfp::config {
+
+Result<DaemonOptions> parse_daemon_options(std::string_view text, const std::string& source, const std::vector<std::string>& settings) {
+  DaemonOptions options;
+  const auto document = parse_yaml(text, source);
+  if (!document) return tl::unexpected(document.error());
+  if (Result<void> loaded = load_fields(*document, source, options); !loaded) return tl::unexpected(loaded.error());
+  for (const std::string& setting : settings) {
+    const auto overlay = document_of_setting(setting);
+    if (!overlay) return tl::unexpected(overlay.error());
+    if (Result<void> loaded = load_fields(*overlay, "--set " + setting.substr(0, 80), options, false); !loaded) return tl::unexpected(loaded.error());
+  }
+  if (Result<void> valid = validate(options); !valid)
+    return failure(valid.error().code, fmt::format("{}: {}", source, valid.error().what));
+  return options;
+}
+
+Result<DaemonOptions> load_daemon_options(const std::filesystem::path& file, const std::vector<std::string>& settings) {
+  if (file.empty()) return parse_daemon_options("", "configuration", settings);
+  const auto text = read_text(file);
+  if (!text) return tl::unexpected(text.error());
+  return parse_daemon_options(*text, file.string(), settings);
+}
+
+std::string to_yaml(const DaemonOptions& options) { return fields_to_yaml(options); }
+
+std::string schema_json() {
+  DaemonOptions defaults;
+  nlohmann::ordered_json schema = {{"$schema", "https://json-schema.org/draft/2020-12/schema"}, {"title", "gfpd configuration"}};
+  schema.update(FieldSchema::of(defaults));
+  return schema.dump(2);
+}
+
+}  // namespace gfp::config

@@ -1,0 +1,84 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "gfp/core/error.hpp"
+#include "gfp/core/fields.hpp"
+#include "gfp/frame/run_source.hpp"
+#include "gfp/pipeline/pipeline_options.hpp"
+#include "publish/publish_options.hpp"
+
+namespace gfp {
+
+/// One sensor: its name in topics, the driver that reads it and the driver's own options.
+struct SensorConfig {
+  std::string name = "camera";      ///< [a-z0-9_]+, unique.
+  std::string driver = "synthetic";
+  std::string camera;               ///< Camera file, or `fx,fy,cx,cy`; empty: what the driver knows by itself.
+  SourceOptions source;             ///< Timeouts and reconnection.
+};
+
+template <class Visitor>
+void visit_fields(SensorConfig& o, Visitor&& field) {
+  field("name", o.name);
+  field("driver", o.driver, OneOf{{"synthetic", "replay"}});
+  field("camera", o.camera);
+  field.section("source", o.source);
+}
+
+struct LogOptions {
+  std::string level = "info";
+  std::string file;  ///< Empty: standard error.
+};
+
+template <class Visitor>
+void visit_fields(LogOptions& o, Visitor&& field) {
+  field("level", o.level, OneOf{{"trace", "debug", "info", "warn", "error", "off"}});
+  field("file", o.file);
+}
+
+/// The whole configuration of gfpd.
+struct DaemonOptions {
+  int threads = 0;          ///< Of the pipeline; 0: one a core.
+  bool lossless = false;    ///< Every frame is processed, however late: for replay. False: the latest frame wins.
+  std::vector<SensorConfig> sensors;
+  PublishOptions publish;
+  LogOptions log;
+  PipelineOptions pipeline;
+};
+
+template <class Visitor>
+void visit_fields(DaemonOptions& o, Visitor&& field) {
+  field("threads", o.threads, 0, 256);
+  field("lossless", o.lossless);
+  field.list("sensors", o.sensors);
+  field.section("publish", o.publish);
+  field.section("log", o.log);
+  field.section("pipeline", o.pipeline);
+}
+
+/// What one field list cannot say: sensor names are well-formed and unique, ranges are not empty, tcp only where it is
+/// allowed. Errors: kInvalidArgument, as in `sensors.1.name = front, expected a name no other sensor has`.
+Result<void> validate(const DaemonOptions& options);
+
+}  // namespace gfp
+
+namespace gfp::config {
+
+/// The defaults, overlaid with the file, overlaid with `path.to.key=value` settings in their order; validated.
+/// An empty path stands for no file. Errors: kNotFound, kIo, kTooLarge, kCorruptData, kInvalidArgument; each names the
+/// file (or the setting), line, key, value and bound, a line per problem.
+Result<DaemonOptions> load_daemon_options(const std::filesystem::path& file, const std::vector<std::string>& settings = {});
+
+/// The same from text; `source` is what errors name.
+Result<DaemonOptions> parse_daemon_options(std::string_view text, const std::string& source, const std::vector<std::string>& settings = {});
+
+/// Every option with its value, as YAML that load_daemon_options() reads back to the same.
+std::string to_yaml(const DaemonOptions& options);
+
+/// JSON Schema (2020-12) of the configuration: keys, types, defaults, bounds.
+std::string schema_json();
+
+}  // namespace gfp::config

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "gfp/core/fields.hpp"
+
+namespace gfp {
+
+/// Where and how the daemon publishes (DESIGN, endpoints and topics).
+struct PublishOptions {
+  std::vector<std::string> sensor_endpoints;  ///< Empty: default_endpoint("sensor").
+  std::vector<std::string> state_endpoints;   ///< Empty: default_endpoint("state").
+  bool insecure = false;                      ///< Allows tcp, which is neither encrypted nor authenticated.
+  int sensor_high_water_mark = 3;             ///< Messages that wait for one slow subscriber before the newest are dropped.
+  int state_high_water_mark = 1000;
+  double heartbeat_s = 1.0;                   ///< Status, topologies and last values are repeated this often.
+  std::string vertices = "float32";           ///< Coding of vertices on the wire; int16 halves them (0.5 * extent / 32767).
+};
+
+template <class Visitor>
+void visit_fields(PublishOptions& o, Visitor&& field) {
+  field("sensor_endpoints", o.sensor_endpoints);
+  field("state_endpoints", o.state_endpoints);
+  field("insecure", o.insecure);
+  field("sensor_high_water_mark", o.sensor_high_water_mark, 1, 100);
+  field("state_high_water_mark", o.state_high_water_mark, 10, 100'000);
+  field("heartbeat_s", o.heartbeat_s, 0.05, 60.0);
+  field("vertices", o.vertices, OneOf{{"float32", "int16"}});
+}
+
+}  // namespace gfp
