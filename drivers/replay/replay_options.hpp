@@ -20,12 +20,13 @@ struct ReplayOptions {
   SensorNoise noise;                    ///< Of the sensor that took the recording.
 };
 
-/// The numeric members; `sensor`, `axes` and the camera are named by whoever reads the configuration.
+/// What a configuration's `replay` section holds; sensor and camera are said once, beside it, for every driver.
 template <class Visitor>
 void visit_fields(ReplayOptions& o, Visitor&& field) {
   field("rate_hz", o.rate_hz, 0.0, 1000.0);
-  field("loop", o.loop, false, true);
+  field("loop", o.loop);
   field("step", o.step, 1, 1'000'000);
+  field("axes", o.axes);
 }
 
 }  // namespace gfp

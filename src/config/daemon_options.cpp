@@ -80,18 +80,37 @@ Result<void> validate(const DaemonOptions& options) {
 }  // namespace gfp
 
 namespace gfp::config {
+namespace {
+
+/// The layers from the bottom: defaults, gripper file, the document, the settings. The gripper file is named by an upper
+/// layer, so these are read twice: once to learn its name.
+Result<DaemonOptions> overlay(DaemonOptions options, const YAML::Node& document, const std::string& source,
+                              const std::vector<std::string>& settings) {
+  if (Result<void> loaded = load_fields(document, source, options); !loaded) return tl::unexpected(loaded.error());
+  for (const std::string& setting : settings) {
+    const auto change = document_of_setting(setting);
+    if (!change) return tl::unexpected(change.error());
+    if (Result<void> loaded = load_fields(*change, "--set " + setting.substr(0, 80), options, false); !loaded)
+      return tl::unexpected(loaded.error());
+  }
+  return options;
+}
+
+}  // namespace
 
 Result<DaemonOptions> parse_daemon_options(std::string_view text, const std::string& source, const std::vector<std::string>& settings) {
-  DaemonOptions options;
   const auto document = parse_yaml(text, source);
   if (!document) return tl::unexpected(document.error());
-  if (Result<void> loaded = load_fields(*document, source, options); !loaded) return tl::unexpected(loaded.error());
-  for (const std::string& setting : settings) {
-    const auto overlay = document_of_setting(setting);
-    if (!overlay) return tl::unexpected(overlay.error());
-    if (Result<void> loaded = load_fields(*overlay, "--set " + setting.substr(0, 80), options, false); !loaded) return tl::unexpected(loaded.error());
+  auto options = overlay({}, *document, source, settings);
+  if (options && !options->gripper_file.empty()) {
+    const auto gripper = load_gripper_file(std::filesystem::path(source).parent_path() / options->gripper_file);
+    if (!gripper) return tl::unexpected(gripper.error());
+    DaemonOptions with_gripper;
+    with_gripper.pipeline.gripper = *gripper;
+    options = overlay(with_gripper, *document, source, settings);
   }
-  if (Result<void> valid = validate(options); !valid)
+  if (!options) return options;
+  if (Result<void> valid = validate(*options); !valid)
     return failure(valid.error().code, fmt::format("{}: {}", source, valid.error().what));
   return options;
 }
@@ -101,6 +120,16 @@ Result<DaemonOptions> load_daemon_options(const std::filesystem::path& file, con
   const auto text = read_text(file);
   if (!text) return tl::unexpected(text.error());
   return parse_daemon_options(*text, file.string(), settings);
+}
+
+Result<Gripper> load_gripper_file(const std::filesystem::path& file) {
+  const auto text = read_text(file);
+  if (!text) return tl::unexpected(text.error());
+  const auto document = parse_yaml(*text, file.string());
+  if (!document) return tl::unexpected(document.error());
+  Gripper gripper;
+  if (Result<void> loaded = load_fields(*document, file.string(), gripper); !loaded) return tl::unexpected(loaded.error());
+  return gripper;
 }
 
 std::string to_yaml(const DaemonOptions& options) { return fields_to_yaml(options); }

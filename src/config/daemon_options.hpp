@@ -9,6 +9,7 @@
 #include "gfp/frame/run_source.hpp"
 #include "gfp/pipeline/pipeline_options.hpp"
 #include "publish/publish_options.hpp"
+#include "replay/replay_options.hpp"
 
 namespace gfp {
 
@@ -16,16 +17,20 @@ namespace gfp {
 struct SensorConfig {
   std::string name = "camera";      ///< [a-z0-9_]+, unique.
   std::string driver = "synthetic";
+  std::string input;                ///< File or folder that `replay` plays.
   std::string camera;               ///< Camera file, or `fx,fy,cx,cy`; empty: what the driver knows by itself.
   SourceOptions source;             ///< Timeouts and reconnection.
+  ReplayOptions replay;             ///< Of the driver of that name; its `sensor` and `camera` are the ones above.
 };
 
 template <class Visitor>
 void visit_fields(SensorConfig& o, Visitor&& field) {
   field("name", o.name);
   field("driver", o.driver, OneOf{{"synthetic", "replay"}});
+  field("input", o.input);
   field("camera", o.camera);
   field.section("source", o.source);
+  field.section("replay", o.replay);
 }
 
 struct LogOptions {
@@ -43,6 +48,7 @@ void visit_fields(LogOptions& o, Visitor&& field) {
 struct DaemonOptions {
   int threads = 0;          ///< Of the pipeline; 0: one a core.
   bool lossless = false;    ///< Every frame is processed, however late: for replay. False: the latest frame wins.
+  std::string gripper_file; ///< As in config/grippers, relative to the configuration; under what pipeline.gripper says.
   std::vector<SensorConfig> sensors;
   PublishOptions publish;
   LogOptions log;
@@ -53,6 +59,7 @@ template <class Visitor>
 void visit_fields(DaemonOptions& o, Visitor&& field) {
   field("threads", o.threads, 0, 256);
   field("lossless", o.lossless);
+  field("gripper_file", o.gripper_file);
   field.list("sensors", o.sensors);
   field.section("publish", o.publish);
   field.section("log", o.log);
@@ -74,6 +81,9 @@ Result<DaemonOptions> load_daemon_options(const std::filesystem::path& file, con
 
 /// The same from text; `source` is what errors name.
 Result<DaemonOptions> parse_daemon_options(std::string_view text, const std::string& source, const std::vector<std::string>& settings = {});
+
+/// Reads one gripper, as in config/grippers. Errors: as load_daemon_options().
+Result<Gripper> load_gripper_file(const std::filesystem::path& file);
 
 /// Every option with its value, as YAML that load_daemon_options() reads back to the same.
 std::string to_yaml(const DaemonOptions& options);

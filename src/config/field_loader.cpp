@@ -142,14 +142,15 @@ void FieldLoader::operator()(std::string_view name, Transform& value) {
   const std::string path = path_of(name);
   constexpr double kFar = 1e6;  // metres; nothing of ours stands farther away
   Eigen::Matrix4d matrix = Eigen::Matrix4d::Zero();
-  bool shaped = node.IsSequence() && node.size() == 4;
+  const bool flat = node.IsSequence() && node.size() == 16;
+  bool shaped = flat || (node.IsSequence() && node.size() == 4);
   for (std::size_t row = 0; shaped && row < 4; ++row) {
-    shaped = node[row].IsSequence() && node[row].size() == 4;
+    shaped = flat || (node[row].IsSequence() && node[row].size() == 4);
     for (std::size_t column = 0; shaped && column < 4; ++column)
-      read_number(node[row][column], fmt::format("{}.{}.{}", path, row, column),
+      read_number(flat ? node[4 * row + column] : node[row][column], fmt::format("{}.{}.{}", path, row, column),
                   matrix(static_cast<Eigen::Index>(row), static_cast<Eigen::Index>(column)), -kFar, kFar);
   }
-  if (!shaped) return problem(node, path, fmt::format("= {}, expected 4 rows of 4 numbers", shown(node)));
+  if (!shaped) return problem(node, path, fmt::format("= {}, expected 4 rows of 4 numbers, or all 16", shown(node)));
   if (!is_rigid(matrix)) return problem(node, path, "is not rigid: expected a rotation (to 1e-3), a translation and the row [0, 0, 0, 1]");
   // Files carry few digits; the nearest rotation is what was meant.
   value = Transform::Identity();

@@ -31,6 +31,19 @@ TEST(DaemonOptions, EveryFileInConfigLoads) {
   EXPECT_GE(files, 1);
 }
 
+TEST(DaemonOptions, EveryGripperLoadsAndLiesUnderWhatTheConfigurationSays) {
+  for (const auto& entry : std::filesystem::directory_iterator(kConfigDir / "grippers")) {
+    const auto gripper = load_gripper_file(entry.path());
+    ASSERT_TRUE(gripper.has_value()) << gripper.error().what;
+    EXPECT_EQ(gripper->name, entry.path().stem());
+    const auto options = parse_daemon_options("gripper_file: grippers/" + entry.path().filename().string() + "\npipeline: {gripper: {friction: 0.9}}\n",
+                                              (kConfigDir / "robot.yaml").string());
+    ASSERT_TRUE(options.has_value()) << options.error().what;
+    EXPECT_EQ(options->pipeline.gripper.stroke_m, gripper->stroke_m);
+    EXPECT_EQ(options->pipeline.gripper.friction, 0.9);
+  }
+}
+
 TEST(DaemonOptions, SavingAndLoadingIsTheIdentity) {
   DaemonOptions options;
   options.threads = 2;

@@ -102,7 +102,7 @@ TEST(FieldLoader, ErrorsNameFileLineKeyValueAndBound) {
   EXPECT_EQ(problem("numbers: [1, 20]\n"), "file.yaml:1: numbers.1 = 20, expected [-10, 10]");
   EXPECT_EQ(problem("list:\n  - ratio: 1\n  - ratio: 2\n"), "file.yaml:3: list.1.ratio = 2, expected [0, 1]");
   EXPECT_EQ(problem("[1, 2]"), "file.yaml:1: the document expected to be a mapping");
-  EXPECT_EQ(problem("pose: [[1, 0], [0, 1]]"), "file.yaml:1: pose = a list, expected 4 rows of 4 numbers");
+  EXPECT_EQ(problem("pose: [[1, 0], [0, 1]]"), "file.yaml:1: pose = a list, expected 4 rows of 4 numbers, or all 16");
   EXPECT_EQ(problem("pose: [[2, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]"),
             "file.yaml:1: pose is not rigid: expected a rotation (to 1e-3), a translation and the row [0, 0, 0, 1]");
 }

@@ -15,7 +15,7 @@ namespace gfp {
 ///       field("profile", o.profile, OneOf{{"robust", "paper"}});    // text out of a few
 ///       field("classes", o.classes);                                // list of text
 ///       field("coefficients", o.coefficients, -10.0, 10.0);         // list of numbers
-///       field("T_tcp_parent", o.T_tcp_parent);                      // Transform: 4x4, row-major
+///       field("T_tcp_parent", o.T_tcp_parent);                      // Transform: 4x4, row-major, rows or all 16
 ///       field.section("normals", o.normals);                        // a nested options struct
 ///       field.list("sensors", o.sensors);                           // a std::vector of options structs
 ///     }
