@@ -14,6 +14,9 @@ int run(int argc, char** argv) {
   app.set_version_flag("--version", "gfp " + std::string(gfp::version()));
   app.require_subcommand(1);
   app.footer("Every command has --help and --json. Exit codes follow sysexits.h.");
+#ifdef GFP_HAS_STAGES
+  gfp::add_fit_command(app, status);
+#endif
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

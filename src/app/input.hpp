@@ -1,0 +1,31 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "gfp/core/error.hpp"
+#include "gfp/frame/camera_file.hpp"
+#include "replay/replay_source.hpp"
+
+namespace gfp {
+
+/// What a user says of a recording that it does not say itself.
+struct InputOptions {
+  std::optional<CameraFile> camera;
+  std::optional<double> depth_scale_m;  ///< Metres per unit of 16-bit depth.
+  std::string axes;                     ///< As parse_axes() reads them; empty: found from the cloud.
+};
+
+/// One recording, to be read frame by frame as fast as it is taken, with the recording's own time (nothing reads a clock).
+struct Input {
+  std::string name;                      ///< As the user gave it.
+  std::string stem;                      ///< For the names of what is made of it.
+  std::unique_ptr<ReplaySource> source;  ///< Open.
+};
+
+/// Opens a file or folder (DESIGN, `gfp fit INPUT`). Errors: as open_replay(); they name the file.
+Result<Input> open_input(const std::string& name, const InputOptions& options);
+
+}  // namespace gfp
