@@ -9,5 +9,6 @@ namespace gfp {
 /// Each adds one subcommand to `app`; when the command runs (in a CLI11 callback), it says in `status` how it ended.
 /// `status` lives as long as `app`.
 void add_fit_command(CLI::App& app, ExitStatus& status);
+void add_primitive_command(CLI::App& app, ExitStatus& status);
 
 }  // namespace gfp

@@ -14,6 +14,7 @@
 #include "cli/overlay.hpp"
 #include "config/camera_file.hpp"
 #include "gfp/frame/png.hpp"
+#include "wire/scene_json.hpp"
 
 namespace gfp {
 namespace {
@@ -106,7 +107,8 @@ class FitRun {
       if (written) meshes = std::move(*written);
       else status_.fail(std::cerr, arguments_.out, written.error());
     }
-    print_table(std::cout, name, result.scene);
+    if (arguments_.json) std::cout << scene_json(result.scene, {name, job_.pipeline.method, meshes}).dump() << std::endl;  // a line is out as soon as it is there
+    else print_table(std::cout, name, result.scene);
     if (!arguments_.png.empty()) draw(name, many, frame, result);
   }
 

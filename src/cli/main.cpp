@@ -16,6 +16,7 @@ int run(int argc, char** argv) {
   app.footer("Every command has --help and --json. Exit codes follow sysexits.h.");
 #ifdef GFP_HAS_STAGES
   gfp::add_fit_command(app, status);
+  gfp::add_primitive_command(app, status);
 #endif
   try {
     app.parse(argc, argv);

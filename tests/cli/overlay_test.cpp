@@ -9,6 +9,7 @@
 #include "cli/canvas.hpp"
 #include "cli/font5x7.hpp"
 #include "gfp/frame/png.hpp"
+#include "gfp/memory/associate.hpp"
 #include "gfp/scene/remember.hpp"
 #include "support/block_scene.hpp"
 #include "support/box_model.hpp"

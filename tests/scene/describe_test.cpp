@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include "gfp/memory/associate.hpp"
 #include "gfp/scene/remember.hpp"
 #include "support/block_scene.hpp"
 #include "support/box_model.hpp"

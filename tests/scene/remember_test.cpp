@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "gfp/memory/associate.hpp"
 #include "support/block_scene.hpp"
 #include "support/box_model.hpp"
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "gfp/memory/associate.hpp"
+#include "gfp/memory/associate_options.hpp"
 #include "gfp/memory/object_view.hpp"
 #include "gfp/memory/scene_memory.hpp"
 #include "gfp/scene/scene.hpp"
