@@ -44,7 +44,7 @@ inline SceneObject hand_made_object(std::uint64_t id, Random& random) {
   object.id = id;
   object.status = ObjectStatus::kUpdated;
   object.class_probabilities = {{"box", 0.75}, {"unknown", 0.25}};
-  object.model = box_model("gfp_robust", "box", Eigen::Vector3d(random.uniform(0.05, 0.2), 0.1, 0.15), random.uniform());
+  object.model = box_model("gfp_robust", "box", Eigen::Vector3d((64 + random.below(128)) / 1024.0, 0.125, 0.15625), random.uniform());
   auto topology = std::make_shared<Topology>(*object.model.topology);
   topology->hash = 0xB0C5'0000'0000'0001;
   topology->filled_triangles = topology->triangles;
