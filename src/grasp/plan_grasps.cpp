@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <optional>
 
 #include "gfp/grasp/wrench_space.hpp"
@@ -33,8 +34,25 @@ struct ClosedGrasp {
   double margin_m = 0, score = 0;
 };
 
-struct Outcomes {
-  bool approach_blocked = false, open = false;
+/// The farthest points in directions spread over the sphere (Fibonacci lattice), each once.
+std::vector<Vector3d> extreme_points(const std::vector<Vector3d>& points) {
+  constexpr int kDirections = 48;
+  std::vector<Vector3d> extremes;
+  for (int i = 0; i < kDirections; ++i) {
+    const double z = 1 - (2 * i + 1.0) / kDirections, angle = i * std::numbers::pi * (3 - std::sqrt(5.0)), r = std::sqrt(1 - z * z);
+    const Vector3d direction(r * std::cos(angle), r * std::sin(angle), z);
+    const auto farthest = std::max_element(points.begin(), points.end(), [&](const Vector3d& a, const Vector3d& b) { return direction.dot(a) < direction.dot(b); });
+    if (std::find(extremes.begin(), extremes.end(), *farthest) == extremes.end()) extremes.push_back(*farthest);
+  }
+  return extremes;
+}
+
+/// What keeps a jaw from holding the object.
+enum class Obstruction {
+  kNone,
+  kDepth,    ///< The palm meets the object or the tips the table: a shallower grip may help.
+  kFingers,  ///< The fingers meet the object, or the gripper something of the scene: a smaller opening may help.
+  kSlips,    ///< The closed pads do not hold.
 };
 
 class Planner {
@@ -45,6 +63,7 @@ class Planner {
         up_(scene.has_support ? Vector3d(scene.T_camera_support.linear().col(2)) : Vector3d(-scale_.centre.normalized())),
         surroundings_(scene, scale_.centre, scale_.radius_m + reach()) {
     for (const Triangle& triangle : mesh_.triangles) sigma_.push_back(sigma(triangle));
+    extremes_ = extreme_points(mesh_.vertices);
   }
 
   GraspPlan plan();
@@ -56,10 +75,9 @@ class Planner {
   float sigma(const Triangle& triangle) const;
   bool observed(std::int32_t triangle) const;
   std::optional<ClosedGrasp> try_pose(const JawPose& pose);
-  std::optional<ClosedGrasp> close_at(const JawPose& pose, double depth_m, double opening_m);
-  bool too_deep(const JawPose& pose);
-  bool object_in_way(const GripperBoxes& boxes) const;
-  bool free(const Transform& T_camera_tcp, double opening_m, double sweep_m);
+  Obstruction close(ClosedGrasp& grasp, double depth_m);
+  Obstruction obstruction(const ClosedGrasp& grasp, double sweep_m);
+  bool hopeless(const JawPose& pose) const;
   void value(ClosedGrasp& grasp, const std::vector<ShapeDraw>& draws);
   Grasp published(const ClosedGrasp& grasp) const;
 
@@ -73,8 +91,8 @@ class Planner {
   Vector3d up_;
   Surroundings surroundings_;
   std::vector<float> sigma_;  // per triangle
-  Outcomes outcomes_;
-  std::vector<Crossing> crossings_;
+  bool approach_blocked_ = false, slips_ = false;  // why poses failed, for the reason code
+  std::vector<Vector3d> extremes_;
 };
 
 float Planner::sigma(const Triangle& triangle) const {
@@ -92,21 +110,14 @@ bool Planner::observed(std::int32_t triangle) const {
   return seen >= 2;
 }
 
-/// Whether the fingers are too short: the object itself stands where the palm would come, straight behind the contacts.
-bool Planner::too_deep(const JawPose& pose) {
-  const double longest = gripper_.finger_length_m - kShallowDepth * gripper_.pad_depth_m;
-  bvh_.crossings(pose.middle, -pose.approach, 4 * scale_.radius_m, crossings_);
-  return !crossings_.empty() && crossings_.back().distance_m > longest;
-}
-
-bool Planner::object_in_way(const GripperBoxes& boxes) const {
-  return bvh_.meets(boxes.palm) || bvh_.meets(boxes.fingers[0]) || bvh_.meets(boxes.fingers[1]);
-}
-
-bool Planner::free(const Transform& T_camera_tcp, double opening_m, double sweep_m) {
-  const GripperBoxes boxes = gripper_boxes(gripper_, T_camera_tcp, opening_m, sweep_m);
-  return !surroundings_.below_support(boxes, options_.scene_clearance_m) && !object_in_way(boxes) &&
-         !surroundings_.blocks(boxes, options_.scene_clearance_m);
+/// Whether even the shallowest grip puts the palm into one of the object's extreme points, or a fingertip below the table: a
+/// quick look that spares most poses the whole check.
+bool Planner::hopeless(const JawPose& pose) const {
+  const GripperBoxes boxes = gripper_boxes(gripper_, tcp_frame(pose, kShallowDepth * gripper_.pad_depth_m), pose.width_m, options_.pregrasp_offset_m);
+  if (surroundings_.below_support(boxes, options_.scene_clearance_m)) return true;
+  return std::any_of(extremes_.begin(), extremes_.end(), [&](const Vector3d& point) {
+    return ((boxes.palm.T_box_world * point).cwiseAbs() - boxes.palm.half).maxCoeff() < 0;
+  });
 }
 
 std::optional<ClosedGrasp> Planner::try_pose(const JawPose& pose) {
@@ -114,37 +125,46 @@ std::optional<ClosedGrasp> Planner::try_pose(const JawPose& pose) {
     for (const double clearance_share : {1.0, kTightClearance}) {
       const double opening_m = pose.width_m + 2 * clearance_share * options_.opening_clearance_m;
       if (opening_m > gripper_.stroke_m) continue;
-      if (auto grasp = close_at(pose, depth_share * gripper_.pad_depth_m, opening_m)) return grasp;
+      ClosedGrasp grasp{pose, tcp_frame(pose, depth_share * gripper_.pad_depth_m), opening_m, {}, {}, {}};
+      const Obstruction obstruction = close(grasp, depth_share * gripper_.pad_depth_m);
+      if (obstruction == Obstruction::kNone) return grasp;
+      if (obstruction != Obstruction::kFingers) break;  // a smaller opening would not help
     }
   return std::nullopt;
 }
 
-std::optional<ClosedGrasp> Planner::close_at(const JawPose& pose, double depth_m, double opening_m) {
-  ClosedGrasp grasp{pose, tcp_frame(pose, depth_m), opening_m, {}, {}, {}};
-  if (!free(grasp.T_camera_tcp, opening_m, options_.pregrasp_offset_m)) {
-    outcomes_.approach_blocked = outcomes_.approach_blocked || free(grasp.T_camera_tcp, opening_m, 0);
-    return std::nullopt;
+Obstruction Planner::obstruction(const ClosedGrasp& grasp, double sweep_m) {
+  const GripperBoxes boxes = gripper_boxes(gripper_, grasp.T_camera_tcp, grasp.opening_m, sweep_m);
+  if (surroundings_.below_support(boxes, options_.scene_clearance_m) || bvh_.meets(boxes.palm)) return Obstruction::kDepth;
+  if (bvh_.meets(boxes.fingers[0]) || bvh_.meets(boxes.fingers[1]) || surroundings_.blocks(boxes, options_.scene_clearance_m))
+    return Obstruction::kFingers;
+  return Obstruction::kNone;
+}
+
+/// Closes the jaw where `grasp` stands, on the fitted mesh, and centres it between its touches.
+Obstruction Planner::close(ClosedGrasp& grasp, double depth_m) {
+  const Obstruction met = obstruction(grasp, options_.pregrasp_offset_m);
+  if (met != Obstruction::kNone) {
+    approach_blocked_ = approach_blocked_ || obstruction(grasp, 0) == Obstruction::kNone;
+    return met;
   }
-  const auto touches = close_jaw(mesh_, bvh_, gripper_, grasp.T_camera_tcp, opening_m);
-  if (!touches) return std::nullopt;
+  const auto touches = close_jaw(mesh_, bvh_, gripper_, grasp.T_camera_tcp, grasp.opening_m);
+  if (!touches) return Obstruction::kSlips;
   grasp.touches = *touches;
-  // Centre the jaw between the touches, so that both pads arrive together.
   const double off_centre = 0.5 * (grasp.touches[0].point.y() + grasp.touches[1].point.y());
   for (PadTouch& touch : grasp.touches) touch.point.y() -= off_centre;
-  grasp.pose.middle += off_centre * pose.axis;
+  grasp.pose.middle += off_centre * grasp.pose.axis;
   grasp.pose.width_m = grasp.touches[0].point.y() - grasp.touches[1].point.y();
   grasp.T_camera_tcp = tcp_frame(grasp.pose, depth_m);
-  if (std::abs(off_centre) > 1e-4 && !free(grasp.T_camera_tcp, opening_m, options_.pregrasp_offset_m)) return std::nullopt;
+  if (std::abs(off_centre) > 1e-4 && obstruction(grasp, options_.pregrasp_offset_m) != Obstruction::kNone) return Obstruction::kFingers;
 
   std::array<WrenchContact, 2> contacts;
   for (std::size_t i = 0; i < 2; ++i)
     contacts[i] = {grasp.T_camera_tcp * grasp.touches[i].point, grasp.T_camera_tcp.linear() * grasp.touches[i].normal, gripper_.friction, gripper_.torsion_m};
   grasp.quality = grasp_quality(contacts, scale_);
-  if (grasp.quality.epsilon < options_.min_epsilon || !grasp.quality.force_closure) {
-    outcomes_.open = true;
-    return std::nullopt;
-  }
-  return grasp;
+  if (grasp.quality.force_closure && grasp.quality.epsilon >= options_.min_epsilon) return Obstruction::kNone;
+  slips_ = true;
+  return Obstruction::kSlips;
 }
 
 void Planner::value(ClosedGrasp& grasp, const std::vector<ShapeDraw>& draws) {
@@ -204,11 +224,11 @@ GraspPlan Planner::plan() {
     const auto pose = queue.next();
     if (!pose) break;
     if (std::any_of(closed.begin(), closed.end(), [&](const ClosedGrasp& other) { return alike(*pose, other.pose, 0.010, 0.94); })) continue;
-    if (too_deep(*pose)) continue;
+    if (hopeless(*pose)) continue;
     ++checks;
     if (auto grasp = try_pose(*pose)) closed.push_back(*grasp);
   }
-  if (closed.empty()) return {{}, outcomes_.open ? "not_force_closure" : outcomes_.approach_blocked ? "unreachable" : "all_in_collision"};
+  if (closed.empty()) return {{}, slips_ ? "not_force_closure" : approach_blocked_ ? "unreachable" : "all_in_collision"};
 
   const std::vector<ShapeDraw> draws = draw_shapes(model_, options_.uncertainty_samples, options_.seed);
   for (ClosedGrasp& grasp : closed) value(grasp, draws);

@@ -1,6 +1,5 @@
 #include "grasp/soft_pair.hpp"
 
-#include <Eigen/QR>
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -9,6 +8,8 @@
 
 namespace gfp {
 namespace {
+
+#define GFP_CLONES __attribute__((target_clones("arch=x86-64-v3", "default")))
 
 constexpr int kMaxFacets = 256;  // two bipyramids over polygons of 64 edges
 constexpr double kFlat = 1e-9;   // a pivot below it: W has less than six dimensions
@@ -28,9 +29,8 @@ struct Halfspaces {
 
 /// Least of offset |offset| / |normal|^2 over the halfspaces in which facet (value, h) and each opposite facet cancel k.
 /// Raw pointers only, so that both clones give the same bits.
-__attribute__((target_clones("arch=x86-64-v3", "default")))
-double nearest_squared(double value, const double* h, const double* values, const double (*rows)[kMaxFacets], int size) {
-  double nearest = 1e300;
+GFP_CLONES double nearest_squared(double value, const double* h, const double* values, const double (*rows)[kMaxFacets], int size) {
+  double squared[kMaxFacets];
   for (int i = 0; i < size; ++i) {
     const double a = values[i], b = value;  // a * h + b * row vanishes on k
     double normal_squared = 1e-300;
@@ -39,28 +39,64 @@ double nearest_squared(double value, const double* h, const double* values, cons
       normal_squared += u * u;
     }
     const double offset = a * h[6] + b * rows[6][i];
-    const double squared = offset * std::abs(offset) / normal_squared;
-    nearest = squared < nearest ? squared : nearest;
+    squared[i] = offset * (offset < 0 ? -offset : offset) / normal_squared;
   }
+  double nearest = 1e300;
+  for (int i = 0; i < size; ++i) nearest = squared[i] < nearest ? squared[i] : nearest;
   return nearest;
+}
+
+/// Householder's QR of the left 7 of 16 columns (8 rows, row-major); the other columns are carried along. An identity there
+/// becomes Q^T. Returns the product of the pivots, 0 where one is below kFlat.
+GFP_CLONES double triangularise(double (*rows)[16]) {
+  double product = 1;
+  for (int p = 0; p < 7; ++p) {
+    double squared = 0;
+    for (int r = p; r < 8; ++r) squared += rows[r][p] * rows[r][p];
+    const double length = __builtin_sqrt(squared);
+    if (!(length > kFlat)) return 0;
+    product *= length;
+    const double pivot = rows[p][p] > 0 ? -length : length;
+    double reflector[8];
+    for (int r = p; r < 8; ++r) reflector[r] = rows[r][p];
+    reflector[p] -= pivot;
+    const double scale = 1.0 / (length * (length + (rows[p][p] < 0 ? -rows[p][p] : rows[p][p])));  // 2 / |reflector|^2
+    double shares[16] = {};
+    for (int r = p; r < 8; ++r)
+      for (int c = 0; c < 16; ++c) shares[c] += reflector[r] * rows[r][c];
+    for (int r = p; r < 8; ++r)
+      for (int c = 0; c < 16; ++c) rows[r][c] -= scale * reflector[r] * shares[c];
+  }
+  return product;
+}
+
+/// Back substitution in place: columns 7 to 14 of rows 0 to 6 become R^-1 times themselves.
+GFP_CLONES void substitute_back(double (*rows)[16]) {
+  for (int r = 6; r >= 0; --r) {
+    for (int below = r + 1; below < 7; ++below)
+      for (int c = 7; c < 15; ++c) rows[r][c] -= rows[r][below] * rows[below][c];
+    const double inverse = 1.0 / rows[r][r];
+    for (int c = 7; c < 15; ++c) rows[r][c] *= inverse;
+  }
 }
 
 }  // namespace
 
 GraspQuality soft_pair_quality(const WrenchContact& first, const WrenchContact& second, const WrenchScale& scale, int cone_edges) {
-  // Rows of S as columns: S^T = Q R, so that k is Q's last column and T = R^-1 Q^T turns a covector that vanishes on k into
+  // [S^T | I], S^T = Q R, becomes [R | Q^T]: k is Q^T's last row, and T = R^-1 Q^T turns a covector that vanishes on k into
   // its halfspace (-normal, offset).
-  Eigen::Matrix<double, 8, 7> transposed;
-  transposed.topLeftCorner<4, 6>() = contact_map(first, scale).wrench_of_local.transpose();
-  transposed.bottomLeftCorner<4, 6>() = contact_map(second, scale).wrench_of_local.transpose();
-  transposed.col(6) << 1, 0, 0, 0, 1, 0, 0, 0;
-  const Eigen::HouseholderQR<Eigen::Matrix<double, 8, 7>> qr(transposed);
-  const auto pivots = qr.matrixQR().diagonal().cwiseAbs();
-  if (!(pivots.minCoeff() > kFlat)) return {};
-  const Eigen::Matrix<double, 8, 8> q = qr.householderQ();
-  const Eigen::Matrix<double, 8, 1> kernel = q.col(7);
-  const Eigen::Matrix<double, 7, 8> to_halfspace =
-      qr.matrixQR().topRows<7>().triangularView<Eigen::Upper>().solve(q.leftCols<7>().transpose());
+  alignas(32) double rows[8][16] = {};
+  const ContactMap maps[2] = {contact_map(first, scale), contact_map(second, scale)};
+  for (int r = 0; r < 8; ++r) {
+    for (int d = 0; d < 6; ++d) rows[r][d] = maps[r / 4].wrench_of_local(d, r % 4);
+    rows[r][6] = r % 4 == 0 ? 1 : 0;
+    rows[r][7 + r] = 1;
+  }
+  const double pivots = triangularise(rows);
+  if (!(pivots > 0)) return {};
+  substitute_back(rows);
+  const auto kernel = Eigen::Map<const Eigen::Matrix<double, 8, 1>>(&rows[7][7]);
+  const auto to_halfspace = Eigen::Map<const Eigen::Matrix<double, 7, 8, Eigen::RowMajor>, 0, Eigen::OuterStride<16>>(&rows[0][7]);
 
   Halfspaces positive, negative;
   double positive_sum = 0;
@@ -91,7 +127,7 @@ GraspQuality soft_pair_quality(const WrenchContact& first, const WrenchContact& 
   quality.epsilon = quality.force_closure ? std::sqrt(nearest) : 0;
   // A facet's join with the other cone covers vol(bipyramid)^2 / (40 E) * value of W, with k as long as S's maximal minors.
   const double bipyramid = 2.0 / 3.0 * 0.5 * cone_edges * std::sin(2 * std::numbers::pi / cone_edges);
-  quality.volume = bipyramid * bipyramid / (40.0 * cone_edges) * pivots.prod() * positive_sum;
+  quality.volume = bipyramid * bipyramid / (40.0 * cone_edges) * pivots * positive_sum;
   return quality;
 }
 

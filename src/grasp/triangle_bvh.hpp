@@ -17,8 +17,9 @@ struct Crossing {
   bool entering = false;  ///< The ray goes against the triangle's normal: from outside to inside.
 };
 
-/// Bounding-volume hierarchy over a mesh's triangles (median splits). Immutable; safe from any thread.
-/// Cost: about 0.1 ms to build for 1200 triangles, about 1 us a query.
+/// Bounding-volume hierarchy over a mesh's triangles: four children a node, four triangles a leaf, both laid out for vector
+/// instructions. Immutable; safe from any thread.
+/// Cost: about 0.1 ms to build for 1200 triangles, well under 1 us a query.
 class TriangleBvh {
  public:
   TriangleBvh(const std::vector<Eigen::Vector3d>& vertices, const std::vector<Triangle>& triangles);
@@ -32,24 +33,30 @@ class TriangleBvh {
   /// Triangles whose bounds come near the box; all that meet it are among them.
   void gather(const OrientedBox& box, std::vector<std::int32_t>& triangles) const;
 
- private:
+  /// Four boxes side by side, world axes. An empty lane has a negative extent and no child.
   struct Node {
-    Eigen::Vector3d centre, extent;
-    std::int32_t first = 0;  // of its triangles in order_
-    std::int32_t count = 0;  // > 0: a leaf
-    std::int32_t right = -1; // its left child is the next node
+    double centre[3][4], extent[3][4];
+    std::int32_t child[4];  ///< >= 0: a node; < 0: leaf ~child; kNone.
   };
-  using Corners = std::array<Eigen::Vector3d, 3>;
+  /// Four triangles side by side: first corner and the edges from it.
+  struct Leaf {
+    double corner[3][4], edge1[3][4], edge2[3][4];
+    std::int32_t triangle[4];
+    int count;
+  };
 
-  /// Visits the leaf triangles below every node that `skip(node)` lets pass, near to depth first order; `visit(i, corners)`
-  /// returns true to stop.
-  template <class Skip, class Visit>
-  void walk(const Skip& skip, const Visit& visit) const;
-  std::int32_t build(std::int32_t first, std::int32_t last, std::vector<Eigen::Vector3d>& centres);
+ private:
+  static constexpr std::int32_t kNone = INT32_MAX;
+  struct Build;
 
-  std::vector<std::int32_t> order_;
-  std::vector<Corners> corners_;  // in the order of order_
-  std::vector<Node> nodes_;
+  std::int32_t add_node(Build& build, std::int32_t first, std::int32_t last);
+  std::int32_t add_leaf(const Build& build, std::int32_t first, std::int32_t last);
+  /// Visits the leaves below all lanes that `measure(node, lane values)` gives at most `limit()`; `visit` returns true to stop.
+  template <class Measure, class Limit, class Visit>
+  void walk(const Measure& measure, const Limit& limit, const Visit& visit) const;
+
+  std::vector<Node> nodes_;  // the root first, if there is any triangle
+  std::vector<Leaf> leaves_;
 };
 
 }  // namespace gfp

@@ -73,7 +73,7 @@ TEST(TriangleBvh, AnswersLikeALoopOverAllTriangles) {
       const auto at = [&](std::int32_t i) { return box.T_box_world * mesh.vertices[static_cast<std::size_t>(i)]; };
       nearest = std::min(nearest, triangle_box_distance(at(a), at(b), at(c), box.half));
     }
-    EXPECT_EQ(bvh.distance(box, 0.3), nearest) << "seed " << seed;
+    EXPECT_NEAR(bvh.distance(box, 0.3), nearest, 1e-12) << "seed " << seed;
     EXPECT_EQ(bvh.meets(box), nearest == 0) << "seed " << seed;
     std::vector<std::int32_t> near;
     bvh.gather(box, near);

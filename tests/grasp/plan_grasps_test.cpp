@@ -79,7 +79,7 @@ TEST(PlanGrasps, ListsDifferentGraspsBestFirst) {
     for (std::size_t i = 0; i < grasps.size(); ++i)
       for (std::size_t j = 0; j < i; ++j) {
         EXPECT_GE(grasps[j].score, grasps[i].score) << name;
-        const double apart = (0.5 * (grasps[i].contacts[0].point + grasps[i].contacts[1].point - grasps[j].contacts[0].point - grasps[j].contacts[1].point)).norm();
+        const double apart = (grasps[i].T_camera_tcp.translation() - grasps[j].T_camera_tcp.translation()).norm();
         const bool turned = grasps[i].approach.dot(grasps[j].approach) < 0.907 ||
                             std::abs(grasps[i].T_camera_tcp.linear().col(1).dot(grasps[j].T_camera_tcp.linear().col(1))) < 0.907;
         EXPECT_TRUE(turned || apart > 0.005) << name << ' ' << i << ' ' << j;
