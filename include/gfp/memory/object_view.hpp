@@ -30,6 +30,7 @@ struct WarmStart {
   Transform T_camera_object = Transform::Identity();
   Eigen::Vector3d scale = Eigen::Vector3d::Ones();
   std::vector<double> modes;
+  int stable_pose = 0;
   int unchanged_frames = 0;
   double cost = std::numeric_limits<double>::infinity();  ///< FitEvidence::cost of that fit: a warm fit that got worse is searched anew.
   int fits = 0;                         ///< So far; every now and then one of them searches anew.

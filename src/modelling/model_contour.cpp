@@ -1,0 +1,163 @@
+#include "gfp/modelling/model_contour.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "gfp/core/mesh.hpp"
+#include "gfp/modelling/evaluate_fit.hpp"
+#include "modelling/contour_solver.hpp"
+#include "modelling/surface_targets.hpp"
+#include "modelling/symmetry_carry.hpp"
+#include "modelling/vertex_sigma.hpp"
+
+// Global first, then local (ALGORITHM 2): the placement already carries pose, size and modes. Here the surface moves along its normals
+// onto the data (P25), smoothly (P20-P23, relative to the placed shape), symmetric counterparts follow, and whatever would fold or
+// cross itself is taken back. All in the support frame, metres.
+
+namespace gfp {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kFirstGateM = 0.015, kLastGateM = 0.008;  ///< Data farther along the normal is another surface.
+constexpr int kStepsPerTarget = 4;                         ///< Semi-implicit steps before visibility and targets are looked up again.
+constexpr double kSettledM = 1e-4;                         ///< P25: the largest move of a settled contour.
+constexpr double kMovedM = 3e-4;                           ///< A vertex that moved less is frozen (P27).
+constexpr double kLeastFlip = 0.1;                         ///< Cosine between a triangle's normal before and after.
+
+struct Contour {
+  std::vector<Vector3d> rest, vertices;  ///< Placed and current.
+  SurfaceTargets data;                   ///< Of the last look at the image, without what symmetry added.
+  std::vector<double> energies;
+  int iterations = 0;
+  bool settled = false;
+};
+
+std::vector<Vector3d> in_frame(const Transform& T_to_from, const std::vector<Vector3d>& points) {
+  std::vector<Vector3d> result;
+  result.reserve(points.size());
+  for (const auto& p : points) result.push_back(T_to_from * p);
+  return result;
+}
+
+std::vector<Vector3d> displaced(const std::vector<Vector3d>& rest, const Eigen::MatrixX3d& u, double share) {
+  std::vector<Vector3d> result(rest);
+  for (std::size_t i = 0; i < rest.size(); ++i) result[i] += share * u.row(static_cast<Eigen::Index>(i)).transpose();
+  return result;
+}
+
+bool folds(const std::vector<Vector3d>& rest, const std::vector<Vector3d>& moved, const std::vector<Triangle>& triangles) {
+  const auto area = [](const std::vector<Vector3d>& v, const Triangle& t) {
+    const Vector3d& a = v[static_cast<std::size_t>(t[0])];
+    return Vector3d((v[static_cast<std::size_t>(t[1])] - a).cross(v[static_cast<std::size_t>(t[2])] - a));
+  };
+  return std::any_of(triangles.begin(), triangles.end(), [&](const Triangle& t) {
+    const Vector3d before = area(rest, t), after = area(moved, t);
+    return before.dot(after) < kLeastFlip * before.norm() * after.norm() || after.squaredNorm() < 1e-6 * before.squaredNorm();
+  });
+}
+
+bool crosses_itself(const std::vector<Vector3d>& vertices, const std::vector<Triangle>& triangles) {
+  return count_self_intersections({vertices, triangles}, 1) > 0;
+}
+
+/// Moves the rest shape onto the data.
+void run_contour(const ObjectView& view, const Primitive& primitive, const ModellingOptions& options, Contour& contour) {
+  const auto& triangles = primitive.topology->triangles;
+  const auto solver = contour_solver(primitive, options);
+  Eigen::MatrixX3d u = Eigen::MatrixX3d::Zero(static_cast<Eigen::Index>(contour.rest.size()), 3);
+  double gate = kFirstGateM;
+  while (contour.iterations < options.max_iterations && !contour.settled) {
+    const auto normals = vertex_normals({contour.vertices, triangles});
+    std::vector<Vector3d> normals_camera;
+    for (const auto& n : normals) normals_camera.emplace_back(view.T_camera_support.linear() * n);
+    contour.data = surface_targets(view, in_frame(view.T_camera_support, contour.vertices), normals_camera, triangles, gate);
+    SurfaceTargets targets = contour.data;
+    // Targets count from where the vertex is now; the solver's count from rest.
+    for (std::size_t i = 0; i < targets.distance_m.size(); ++i)
+      targets.distance_m[i] += normals[i].dot(u.row(static_cast<Eigen::Index>(i)).transpose());
+    carry_by_symmetry(primitive, options.symmetry_weight, targets);
+    double move = 0;
+    for (int k = 0; k < kStepsPerTarget && contour.iterations < options.max_iterations; ++k, ++contour.iterations) {
+      contour.energies.push_back(solver->energy(u, normals, targets.distance_m, targets.weight));
+      const Eigen::MatrixX3d next = solver->step(u, normals, targets.distance_m, targets.weight);
+      move = (next - u).rowwise().norm().maxCoeff();
+      u = next;
+    }
+    contour.settled = move < kSettledM;
+    contour.vertices = displaced(contour.rest, u, 1.0);
+    gate = std::max(kLastGateM, 0.6 * gate);
+  }
+  // Chain of retreats: as much of the local displacement as neither folds nor crosses.
+  for (const double share : {1.0, 0.7, 0.4, 0.15, 0.0}) {
+    contour.vertices = displaced(contour.rest, u, share);
+    if (share == 0.0 || (!folds(contour.rest, contour.vertices, triangles) && !crosses_itself(contour.vertices, triangles))) break;
+  }
+}
+
+/// The placed shape, with modes shrunk until it does not cross itself; an affinely scaled mean shape never does.
+std::vector<Vector3d> placed_shape(const Placement& placement, const Transform& T_support_object, std::vector<double>& modes) {
+  const Primitive& primitive = *placement.primitive;
+  for (const double share : {1.0, 0.6, 0.3, 0.0}) {
+    modes = placement.modes;
+    for (auto& b : modes) b *= share;
+    auto vertices = in_frame(T_support_object, shape(primitive, placement.size_m, modes));
+    if (share == 0.0 || !crosses_itself(vertices, primitive.topology->triangles)) return vertices;
+  }
+  return {};
+}
+
+/// On the table, not in it and not above it.
+void settle_on_support(const ObjectView& view, std::vector<Vector3d>& vertices) {
+  if (!view.has_support) return;
+  double lowest = 1e300;
+  for (const auto& v : vertices) lowest = std::min(lowest, v.z());
+  for (auto& v : vertices) v.z() -= lowest;
+}
+
+}  // namespace
+
+FittedModel model_contour(const ObjectView& view, const Placement& placement, const ModellingOptions& options) {
+  const Primitive& primitive = *placement.primitive;
+  const auto& triangles = primitive.topology->triangles;
+  const Transform T_support_object = view.T_camera_support.inverse() * placement.T_camera_object;
+  FittedModel model;
+  Contour contour;
+  contour.rest = placed_shape(placement, T_support_object, model.modes);
+  settle_on_support(view, contour.rest);
+  contour.vertices = contour.rest;
+  run_contour(view, primitive, options, contour);
+  settle_on_support(view, contour.vertices);
+
+  model.method = "gfp_robust";
+  model.class_name = primitive.class_name;
+  model.primitive = placement.primitive;
+  model.topology = primitive.topology;
+  model.T_camera_object = placement.T_camera_object;
+  model.size_m = placement.size_m;
+  model.stable_pose = placement.stable_pose;
+  model.vertices = in_frame(T_support_object.inverse(), contour.vertices);
+  model.energies = std::move(contour.energies);
+  model.iterations = contour.iterations;
+  model.converged = contour.settled && placement.converged;
+  model.yaw_low_rad = placement.yaw_low_rad;
+  model.yaw_high_rad = placement.yaw_high_rad;
+  if (placement.covariance.rows() >= 6) model.pose_covariance = placement.covariance.topLeftCorner<6, 6>();
+
+  const auto vertices_camera = in_frame(view.T_camera_support, contour.vertices);
+  mark_observed(view, vertices_camera, triangles, model.states);
+  for (std::size_t i = 0; i < model.states.size(); ++i) {
+    if (primitive.topology->types[i] == PointType::kControl) model.states[i] |= kVertexControl;
+    if ((contour.vertices[i] - contour.rest[i]).norm() > kMovedM) model.states[i] |= kVertexMoved;
+  }
+  contour.data.readings.resize(model.vertices.size(), 0);  // no look at the image where no iteration was asked for
+  model.sigma_m = vertex_sigma(view, placement, contour.data, model.states, contour.vertices, vertex_normals({contour.vertices, triangles}));
+  model.evidence = evaluate_fit(view, vertices_camera, triangles);
+  const Eigen::Vector3d deviation = placement.size_m.array().log().matrix() - primitive.log_size_mean;
+  double squared = deviation.dot(primitive.log_size_covariance.ldlt().solve(deviation));
+  for (const double b : model.modes) squared += b * b;
+  model.evidence.mahalanobis = std::sqrt(squared);
+  return model;
+}
+
+}  // namespace gfp

@@ -1,0 +1,71 @@
+#include "modelling/surface_targets.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "gfp/core/raster.hpp"
+
+namespace gfp {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kReadingsForHalfWeight = 1.5;
+constexpr double kLeastFacing = 0.25;     ///< Cosine between normal and ray below which a difference along the ray says little.
+constexpr double kLeastAgreement = 0.35;  ///< Cosine between modelled and observed normal: else another surface.
+
+std::size_t at(int index) { return static_cast<std::size_t>(index); }
+
+/// A pixel beside the mask's edge mixes two surfaces.
+bool inside_mask(const ObjectView& view, int i, int j) {
+  if (i < 1 || j < 1 || i + 1 >= view.depth_m.width || j + 1 >= view.depth_m.height) return false;
+  return view.evidence.at(i, j) == Evidence::kObject && view.evidence.at(i - 1, j) == Evidence::kObject && view.evidence.at(i + 1, j) == Evidence::kObject &&
+         view.evidence.at(i, j - 1) == Evidence::kObject && view.evidence.at(i, j + 1) == Evidence::kObject;
+}
+
+}  // namespace
+
+SurfaceTargets surface_targets(const ObjectView& view, const std::vector<Vector3d>& vertices, const std::vector<Vector3d>& normals,
+                               const std::vector<Triangle>& triangles, double gate_m) {
+  SurfaceTargets targets;
+  targets.distance_m.assign(vertices.size(), 0);
+  targets.weight.assign(vertices.size(), 0);
+  targets.readings.assign(vertices.size(), 0);
+  const int step = std::max(1, static_cast<int>(std::sqrt(view.object_pixels / 4000.0)));
+  DepthTile rendered;
+  rendered.reset(view.tile, step);
+  rasterise(vertices, triangles, view.camera, rendered, {.cull_back = true});
+  for (int cell = 0; cell < rendered.width * rendered.height; ++cell) {
+    if (!rendered.hit(cell)) continue;
+    const int i = cell % rendered.width * step, j = cell / rendered.width * step;
+    if (!inside_mask(view, i, j)) continue;
+    const double difference = static_cast<double>(view.depth_m.at(i, j)) - static_cast<double>(rendered.depth[at(cell)]);
+    const Vector3d ray = view.camera.ray(view.tile.u0 + i, view.tile.v0 + j);
+    const Triangle& t = triangles[at(rendered.triangle[at(cell)])];
+    const Vector3d weights = barycentric_on_ray(vertices[at(t[0])], vertices[at(t[1])], vertices[at(t[2])], ray);
+    const Vector3d normal = (weights[0] * normals[at(t[0])] + weights[1] * normals[at(t[1])] + weights[2] * normals[at(t[2])]).normalized();
+    const double facing = normal.dot(ray);
+    if (facing > -kLeastFacing) continue;
+    const Vector3d observed = view.normals.at(i, j).cast<double>();
+    if (observed.squaredNorm() > 0.5 && observed.dot(normal) < kLeastAgreement) continue;
+    const double along_normal = difference * facing;
+    if (std::abs(along_normal) > gate_m) continue;
+    for (int k = 0; k < 3; ++k) {
+      targets.distance_m[at(t[at(k)])] += weights[k] * along_normal;
+      targets.readings[at(t[at(k)])] += weights[k];
+    }
+  }
+  for (std::size_t v = 0; v < vertices.size(); ++v) {
+    if (targets.readings[v] < 0.3) {
+      targets.distance_m[v] = 0;
+      continue;
+    }
+    targets.distance_m[v] /= targets.readings[v];
+    targets.weight[v] = targets.readings[v] / (targets.readings[v] + kReadingsForHalfWeight);
+    targets.readings[v] *= step * step;
+  }
+  return targets;
+}
+
+}  // namespace gfp

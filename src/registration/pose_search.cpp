@@ -1,0 +1,117 @@
+#include "registration/pose_search.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "registration/class_prior.hpp"
+
+namespace gfp {
+namespace {
+
+using Eigen::Vector3d;
+
+/// Low and high `share` quantiles of the values.
+std::pair<double, double> quantile_range(std::vector<double>& values, double share) {
+  const auto low = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+  const auto high = static_cast<std::ptrdiff_t>(values.size()) - 1 - low;
+  std::nth_element(values.begin(), values.begin() + low, values.end());
+  const double low_value = values[static_cast<std::size_t>(low)];
+  std::nth_element(values.begin(), values.begin() + high, values.end());
+  return {low_value, values[static_cast<std::size_t>(high)]};
+}
+
+/// Extent of the rotated, scaled mean shape along `direction`, and how it depends on the logarithm of each axis' size.
+struct ModelExtent {
+  double length_m = 0;
+  Vector3d weights = Vector3d::Zero();  ///< d log(length) / d log(size), sums to 1.
+};
+
+ModelExtent model_extent(const Primitive& primitive, const Eigen::Matrix3d& rotation, const Vector3d& size, const Vector3d& direction) {
+  const Vector3d scaled = size.cwiseProduct(rotation.transpose() * direction);
+  double low = 1e300, high = -1e300;
+  const Vector3d *lowest = nullptr, *highest = nullptr;
+  for (const auto& p : primitive.mean) {
+    const double value = scaled.dot(p);
+    if (value < low) { low = value; lowest = &p; }
+    if (value > high) { high = value; highest = &p; }
+  }
+  ModelExtent extent{high - low, Vector3d::Zero()};
+  if (extent.length_m > 0) extent.weights = scaled.cwiseProduct(*highest - *lowest) / extent.length_m;
+  return extent;
+}
+
+PoseState initial_state(VisibleFit& fit, const ObservedExtent& extent, const Primitive& primitive, const Eigen::Matrix3d& rotation) {
+  Vector3d log_size = primitive.log_size_mean;
+  for (int pass = 0; pass < 2; ++pass) {  // the second pass linearises at a better size
+    SizeBelief belief(primitive);
+    const Vector3d size = log_size.array().exp().matrix();
+    const auto observe = [&](const Vector3d& direction, double length_m, double sigma) {
+      const ModelExtent model = model_extent(primitive, rotation, size, direction);
+      if (model.length_m > 1e-6 && length_m > 1e-3)
+        belief.observe(model.weights, model.weights.dot(log_size) + std::log(length_m / model.length_m), sigma);
+    };
+    observe(Vector3d::UnitZ(), extent.height_m, extent.height_sigma);
+    observe(extent.lateral, extent.width_m, extent.width_sigma);
+    log_size = belief.mean();
+  }
+  PoseState state;
+  state.T_support_object.linear() = rotation;
+  state.log_size = log_size;
+  state.modes.setZero(static_cast<Eigen::Index>(primitive.modes.size()));
+  state.T_support_object.translation() = extent.centroid;
+  for (int pass = 0; pass < 2; ++pass) {
+    fit.pose(state);
+    state.T_support_object.translation().z() -= fit.lowest_z();
+    const Vector3d shift = fit.visible_centroid_shift();
+    state.T_support_object.translation().head<2>() += shift.head<2>();
+  }
+  return state;
+}
+
+}  // namespace
+
+ObservedExtent observed_extent(const ObjectView& view, const ObservedTile& tile) {
+  ObservedExtent extent;
+  if (tile.object_cells.empty()) return extent;
+  for (const int cell : tile.object_cells) extent.centroid += tile.points[static_cast<std::size_t>(cell)];
+  extent.centroid /= static_cast<double>(tile.object_cells.size());
+  const Vector3d sight = extent.centroid - tile.T_camera_support.inverse().translation();
+  extent.azimuth_rad = std::atan2(sight.y(), sight.x());
+  extent.lateral = Vector3d(-std::sin(extent.azimuth_rad), std::cos(extent.azimuth_rad), 0);
+  std::vector<double> across;
+  across.reserve(tile.object_cells.size());
+  for (const int cell : tile.object_cells) across.push_back(extent.lateral.dot(tile.points[static_cast<std::size_t>(cell)]));
+  const auto [low, high] = quantile_range(across, 0.01);
+  extent.width_m = high - low + tile.pixel_m(tile.object_cells.front());
+  extent.height_m = view.height_m;
+  if (view.top_cut) extent.height_sigma = 0.5;
+  if (view.touches_border || view.occluded) extent.width_sigma = 0.4;
+  return extent;
+}
+
+int distinct_yaws(const Primitive& primitive, const StablePose& pose, int steps) {
+  const bool axis_is_vertical = std::abs(pose.R_support_object(2, 2)) > 0.99;
+  const Symmetry& symmetry = primitive.symmetry;
+  if (axis_is_vertical && symmetry.revolution) return 1;
+  if (axis_is_vertical && symmetry.cyclic > 1) return std::max(1, steps / symmetry.cyclic);
+  const bool half_turn = axis_is_vertical ? symmetry.mirror_x && symmetry.mirror_y : symmetry.flip_z && (symmetry.revolution || symmetry.mirror_x || symmetry.mirror_y);
+  return half_turn ? std::max(1, steps / 2) : steps;
+}
+
+std::vector<ScoredState> search_yaws(VisibleFit& fit, const ObservedExtent& extent, const Primitive& primitive, int stable_pose, int yaw_steps) {
+  const StablePose& pose = primitive.stable_poses[static_cast<std::size_t>(stable_pose)];
+  std::vector<ScoredState> states;
+  const int count = distinct_yaws(primitive, pose, yaw_steps);
+  for (int k = 0; k < count; ++k) {
+    const double yaw = extent.azimuth_rad + 2 * std::numbers::pi * k / yaw_steps;
+    const Eigen::Matrix3d rotation = Eigen::AngleAxisd(yaw, Vector3d::UnitZ()) * pose.R_support_object;
+    ScoredState scored{initial_state(fit, extent, primitive, rotation), stable_pose, 0};
+    fit.pose(scored.state);
+    scored.score = fit.score();
+    states.push_back(std::move(scored));
+  }
+  return states;
+}
+
+}  // namespace gfp

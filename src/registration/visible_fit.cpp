@@ -1,0 +1,222 @@
+#include "registration/visible_fit.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace gfp {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kEffectivePixels = 400;     ///< Neighbouring pixels err together: no more independent readings than this.
+
+std::size_t at(int index) { return static_cast<std::size_t>(index); }
+
+double geman_mcclure(double residual, double scale) {
+  const double ratio = residual / scale;
+  const double denominator = 1.0 + ratio * ratio;
+  return 1.0 / (denominator * denominator);
+}
+
+double root_of_squares(double a, double b) { return std::sqrt(a * a + b * b); }
+
+/// The nearest cell that the model covers, in growing squares; -1 where there is none within reach.
+int nearest_hit(const DepthTile& rendered, int cell) {
+  constexpr int kReach = 16;
+  const int u = cell % rendered.width, v = cell / rendered.width;
+  int best = -1, best_squared = kReach * kReach + 1;
+  const auto look = [&](int i, int j) {
+    if (i < 0 || j < 0 || i >= rendered.width || j >= rendered.height) return;
+    const int squared = (i - u) * (i - u) + (j - v) * (j - v), there = j * rendered.width + i;
+    if (squared >= best_squared || !rendered.hit(there)) return;
+    best = there;
+    best_squared = squared;
+  };
+  for (int ring = 1; ring <= kReach && ring * ring < best_squared; ++ring) {
+    for (int k = -ring; k <= ring; ++k) {
+      look(u + k, v - ring);
+      look(u + k, v + ring);
+    }
+    for (int k = -ring + 1; k < ring; ++k) {
+      look(u - ring, v + k);
+      look(u + ring, v + k);
+    }
+  }
+  return best;
+}
+
+}  // namespace
+
+struct VisibleFit::SurfacePoint {
+  Vector3d point;                  ///< Support frame.
+  std::int32_t vertices[3];
+  Vector3d weights;                ///< Barycentric.
+  Vector3d canonical;              ///< Deformed canonical point.
+};
+
+void PoseState::apply(const Eigen::VectorXd& step) {
+  T_support_object.translation() += step.segment<3>(0);
+  T_support_object.linear() = rotation_from_vector(step.segment<3>(3)) * T_support_object.linear();
+  log_size += step.segment<3>(kPose);
+  modes += step.tail(modes.size());
+}
+
+VisibleFit::VisibleFit(const ObservedTile& tile, const Primitive& primitive, bool has_support)
+    : tile_(tile), primitive_(primitive), has_support_(has_support), size_information_(primitive.log_size_covariance.inverse()),
+      camera_support_(tile.T_camera_support.inverse().translation()) {}
+
+void VisibleFit::pose(const PoseState& state) {
+  state_ = state;
+  size_ = state.log_size.array().exp().matrix();
+  const std::size_t count = primitive_.size();
+  canonical_ = primitive_.mean;
+  for (Eigen::Index k = 0; k < state.modes.size(); ++k) {
+    const double coefficient = state.modes[k];
+    if (coefficient == 0) continue;
+    const auto& mode = primitive_.modes[static_cast<std::size_t>(k)];
+    for (std::size_t i = 0; i < count; ++i) canonical_[i] += coefficient * mode[i];
+  }
+  support_.resize(count);
+  camera_.resize(count);
+  const Eigen::Matrix3d linear = state.T_support_object.linear() * size_.asDiagonal();
+  const Vector3d offset = state.T_support_object.translation();
+  for (std::size_t i = 0; i < count; ++i) {
+    support_[i] = linear * canonical_[i] + offset;
+    camera_[i] = tile_.T_camera_support * support_[i];
+  }
+  rendered_.reset(tile_.rect, tile_.step);
+  rasterise(camera_, primitive_.topology->triangles, tile_.camera, rendered_, {.cull_back = true});
+}
+
+double VisibleFit::lowest_z() const {
+  double lowest = 1e300;
+  for (const auto& p : support_) lowest = std::min(lowest, p.z());
+  return lowest;
+}
+
+Vector3d VisibleFit::visible_centroid_shift() const {
+  Vector3d observed = Vector3d::Zero(), modelled = Vector3d::Zero();
+  int count = 0;
+  for (int cell = 0; cell < tile_.cells(); ++cell) {
+    if (!rendered_.hit(cell)) continue;
+    modelled += camera_support_ + tile_.rays[at(cell)] * static_cast<double>(rendered_.depth[at(cell)]);
+    ++count;
+  }
+  for (const int cell : tile_.object_cells) observed += tile_.points[at(cell)];
+  if (count == 0 || tile_.object_cells.empty()) return Vector3d::Zero();
+  return observed / static_cast<double>(tile_.object_cells.size()) - modelled / static_cast<double>(count);
+}
+
+VisibleFit::SurfacePoint VisibleFit::surface_point(int cell) const {
+  const Triangle& t = primitive_.topology->triangles[at(rendered_.triangle[at(cell)])];
+  SurfacePoint result{};
+  for (std::size_t k = 0; k < 3; ++k) result.vertices[k] = t[k];
+  result.weights = barycentric_on_ray(support_[at(t[0])] - camera_support_, support_[at(t[1])] - camera_support_, support_[at(t[2])] - camera_support_, tile_.rays[at(cell)]);
+  for (int k = 0; k < 3; ++k) {
+    result.point += result.weights[k] * support_[at(result.vertices[k])];
+    result.canonical += result.weights[k] * canonical_[at(result.vertices[k])];
+  }
+  return result;
+}
+
+VisibleFit::SurfacePoint VisibleFit::vertex_point(std::size_t vertex) const {
+  const auto v = static_cast<std::int32_t>(vertex);
+  return {support_[vertex], {v, v, v}, {1, 0, 0}, canonical_[vertex]};
+}
+
+void VisibleFit::add(const SurfacePoint& p, const Vector3d& direction, double residual, double weight) {
+  const Vector3d arm = p.point - state_.T_support_object.translation();
+  const Vector3d scaled_direction = size_.cwiseProduct(state_.T_support_object.linear().transpose() * direction);
+  row_.segment<3>(0) = direction;
+  row_.segment<3>(3) = arm.cross(direction);
+  row_.segment<3>(PoseState::kPose) = scaled_direction.cwiseProduct(p.canonical);
+  for (Eigen::Index k = 0; k < state_.modes.size(); ++k) {
+    const auto& mode = primitive_.modes[static_cast<std::size_t>(k)];
+    row_[PoseState::kShape + k] = scaled_direction.dot(p.weights[0] * mode[at(p.vertices[0])] + p.weights[1] * mode[at(p.vertices[1])] +
+                                                       p.weights[2] * mode[at(p.vertices[2])]);
+  }
+  information_.selfadjointView<Eigen::Lower>().rankUpdate(row_, weight);
+  gradient_ += (weight * residual) * row_;
+}
+
+void VisibleFit::add_surface_residuals(const FitScale& scale) {
+  const double share = std::min(1.0, kEffectivePixels / static_cast<double>(std::max<std::size_t>(1, tile_.object_cells.size())));
+  for (const int cell : tile_.object_cells) {
+    if (!rendered_.hit(cell)) continue;
+    const double residual = plane_distance(tile_, rendered_, cell);
+    const double sigma = root_of_squares(static_cast<double>(tile_.sigma_m[at(cell)]), scale.model_sigma_m);
+    const double weight = share * geman_mcclure(residual, scale.robust_m + 2 * sigma) / (sigma * sigma);
+    Vector3d normal = tile_.normals[at(cell)];
+    if (normal.squaredNorm() < 0.5) normal = -tile_.rays[at(cell)].normalized();
+    // The rendered point is in front of the data where the residual is negative: along the normal towards the camera.
+    add(surface_point(cell), normal, -residual, weight);
+  }
+}
+
+void VisibleFit::add_silhouette_residuals(const FitScale& scale) {
+  const Eigen::Matrix3d R_support_camera = tile_.T_camera_support.linear().transpose();
+  const double share = std::min(1.0, kEffectivePixels / static_cast<double>(std::max<std::size_t>(1, tile_.object_cells.size())));
+
+  // The model's point seen at `cell` should move sideways until it is seen at `target`.
+  const auto draw = [&](int cell, int target) {
+    const double du = target % tile_.width - cell % tile_.width, dv = target / tile_.width - cell / tile_.width;
+    const double length = root_of_squares(du, dv);
+    const double pixel = tile_.step * static_cast<double>(rendered_.depth[at(cell)]) / tile_.camera.fx;
+    const double distance = (length - 0.5) * pixel;
+    const double sigma = root_of_squares(0.7 * pixel, scale.model_sigma_m);
+    const double weight = share * geman_mcclure(distance, 2 * (scale.robust_m + 2 * sigma)) / (sigma * sigma);
+    add(surface_point(cell), R_support_camera * Vector3d(du / length, dv / length, 0), -distance, weight);
+  };
+  for (const int cell : tile_.object_cells) {
+    if (!tile_.outline[at(cell)] || rendered_.hit(cell)) continue;
+    const int from = nearest_hit(rendered_, cell);
+    if (from >= 0) draw(from, cell);
+  }
+  for (int j = 0; j < tile_.height; ++j) {
+    for (int i = 0; i < tile_.width; ++i) {
+      const int cell = j * tile_.width + i;
+      if (!rendered_.hit(cell) || tile_.evidence[at(cell)] == Evidence::kObject || tile_.depth[at(cell)] <= 0 || !in_free_space(tile_, rendered_, cell)) continue;
+      const bool on_edge = i == 0 || j == 0 || i + 1 == tile_.width || j + 1 == tile_.height || !rendered_.hit(cell - 1) || !rendered_.hit(cell + 1) ||
+                           !rendered_.hit(cell - tile_.width) || !rendered_.hit(cell + tile_.width);
+      if (on_edge && tile_.nearest_object[at(cell)] >= 0) draw(cell, tile_.nearest_object[at(cell)]);
+    }
+  }
+}
+
+void VisibleFit::add_contact_and_priors(const FitScale& scale) {
+  const double tilt = has_support_ ? scale.tilt_sigma_rad : 0.35;
+  information_(3, 3) += 1.0 / (tilt * tilt);
+  information_(4, 4) += 1.0 / (tilt * tilt);
+  information_(5, 5) += 1e-2;  // keeps the yaw of a body of revolution where it is
+  if (has_support_) {
+    std::size_t lowest = 0;
+    for (std::size_t i = 1; i < support_.size(); ++i)
+      if (support_[i].z() < support_[lowest].z()) lowest = i;
+    add(vertex_point(lowest), Vector3d::UnitZ(), support_[lowest].z(), 1.0 / (scale.contact_sigma_m * scale.contact_sigma_m));
+  }
+  information_.block<3, 3>(PoseState::kPose, PoseState::kPose) += size_information_;
+  gradient_.segment<3>(PoseState::kPose) += size_information_ * (state_.log_size - primitive_.log_size_mean);
+  const Eigen::Index modes = state_.modes.size();
+  information_.diagonal().tail(modes).array() += 1.0;
+  gradient_.tail(modes) += state_.modes;
+}
+
+Eigen::VectorXd VisibleFit::step(const FitScale& scale, double damping) {
+  const int unknowns = state_.unknowns();
+  information_.setZero(unknowns, unknowns);
+  gradient_.setZero(unknowns);
+  row_.setZero(unknowns);
+  add_surface_residuals(scale);
+  add_silhouette_residuals(scale);
+  add_contact_and_priors(scale);
+  information_.triangularView<Eigen::StrictlyUpper>() = information_.transpose();
+  Eigen::MatrixXd damped = information_;
+  damped.diagonal() *= 1.0 + damping;
+  Eigen::VectorXd step = -damped.ldlt().solve(gradient_);
+  // A step may not leave the neighbourhood in which the associations mean something.
+  const double ratios[] = {step.head<3>().norm() / 0.03, step.segment<3>(3).norm() / 0.25, step.segment<3>(6).cwiseAbs().maxCoeff() / 0.25,
+                           step.size() > PoseState::kShape ? step.tail(step.size() - PoseState::kShape).cwiseAbs().maxCoeff() / 1.5 : 0.0};
+  return step / std::max(1.0, *std::max_element(std::begin(ratios), std::end(ratios)));
+}
+
+}  // namespace gfp

@@ -1,0 +1,81 @@
+#pragma once
+
+#include <Eigen/Dense>
+#include <vector>
+
+#include "gfp/core/raster.hpp"
+#include "gfp/memory/image_score.hpp"
+#include "gfp/primitive/primitive.hpp"
+
+namespace gfp {
+
+/// The unknowns of a fit. Tangent order: x y z, rx ry rz (about the object's origin, support axes), log size 3, modes.
+struct PoseState {
+  Transform T_support_object = Transform::Identity();
+  Eigen::Vector3d log_size = Eigen::Vector3d::Zero();
+  Eigen::VectorXd modes;
+
+  static constexpr int kPose = 6, kShape = kPose + 3;
+  int unknowns() const { return kShape + static_cast<int>(modes.size()); }
+  void apply(const Eigen::VectorXd& step);
+};
+
+/// How tight the fit looks at the data; annealed from coarse to fine.
+struct FitScale {
+  double robust_m = 0.01;      ///< Residuals beyond this lose their say.
+  double model_sigma_m = 0.002;///< What the class's shape cannot follow, added to the sensor's noise.
+  double tilt_sigma_rad = 0.02;
+  double contact_sigma_m = 0.0015;
+};
+
+/// Compares what the camera saw of one object with the visible part of a posed primitive, and improves the pose (ALGORITHM 1.3-1.5).
+///
+/// Four kinds of residuals: point-to-plane at object pixels that the model covers; the model's silhouette drawn out to object
+/// pixels that it leaves bare; drawn in from pixels where the sensor saw past it; the lowest vertex on the table. The class prior
+/// on size and modes closes the system. One thread at a time; holds references to its arguments.
+class VisibleFit {
+ public:
+  VisibleFit(const ObservedTile& tile, const Primitive& primitive, bool has_support);
+
+  /// Poses and renders `state`; the functions below speak of it.
+  void pose(const PoseState& state);
+
+  /// Mean capped negative log likelihood over the object's pixels and those where the model stands in free space.
+  double score() const { return image_score(tile_, rendered_).cost; }
+
+  /// Residuals of the posed state -> Gauss-Newton step with Levenberg damping. `information` is the undamped normal matrix.
+  Eigen::VectorXd step(const FitScale& scale, double damping);
+  const Eigen::MatrixXd& information() const { return information_; }
+
+  /// Mean difference observed - rendered over the visible points, support frame; zero where nothing is covered.
+  Eigen::Vector3d visible_centroid_shift() const;
+
+  const PoseState& state() const { return state_; }
+  double lowest_z() const;
+  const DepthTile& rendered() const { return rendered_; }
+  const std::vector<Eigen::Vector3d>& vertices_support() const { return support_; }
+
+ private:
+  struct SurfacePoint;
+  SurfacePoint surface_point(int cell) const;
+  SurfacePoint vertex_point(std::size_t vertex) const;
+  void add(const SurfacePoint& point, const Eigen::Vector3d& direction, double residual, double weight);
+  void add_surface_residuals(const FitScale& scale);
+  void add_silhouette_residuals(const FitScale& scale);
+  void add_contact_and_priors(const FitScale& scale);
+
+  const ObservedTile& tile_;
+  const Primitive& primitive_;
+  bool has_support_;
+  Eigen::Matrix3d size_information_;
+  Eigen::Vector3d camera_support_;               ///< The camera's centre.
+
+  PoseState state_;
+  Eigen::Vector3d size_ = Eigen::Vector3d::Ones();
+  std::vector<Eigen::Vector3d> canonical_, support_, camera_;
+  DepthTile rendered_;
+  Eigen::MatrixXd information_;
+  Eigen::VectorXd gradient_, row_;
+};
+
+}  // namespace gfp

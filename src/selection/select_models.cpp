@@ -1,0 +1,56 @@
+#include "gfp/selection/select_models.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace gfp {
+namespace {
+
+constexpr double kEffectivePixels = 60;   ///< Independent readings that an object's pixels are worth: noise and misfit are correlated.
+constexpr double kFreedomPenalty = 0.5 * 4.1;  ///< Half log of kEffectivePixels for every free parameter (BIC).
+constexpr double kUnknownLogPrior = -3.0; ///< Of "none of the classes we know".
+constexpr double kDescriptorTrust = 0.3;  ///< Share of the descriptors' log likelihood that is kept: they are correlated, and the fit saw more.
+
+/// Parameters that no prior ties down; a class's size and modes pay through their Mahalanobis distance.
+int free_parameters(const FittedModel& model) { return model.primitive ? 0 : 5; }
+
+double log_evidence(const Candidate& candidate) {
+  const FitEvidence& evidence = candidate.model.evidence;
+  const double prior = candidate.model.primitive ? kDescriptorTrust * candidate.log_prior : kUnknownLogPrior;
+  return prior - kEffectivePixels * evidence.cost - 0.5 * evidence.mahalanobis * evidence.mahalanobis -
+         kFreedomPenalty * free_parameters(candidate.model);
+}
+
+ObjectEstimate select_one(const ObjectView& view, std::vector<Candidate> candidates) {
+  ObjectEstimate estimate;
+  estimate.id = view.id;
+  estimate.segment = view.segment;
+  std::size_t best = 0;
+  std::vector<double> evidences;
+  for (const auto& candidate : candidates) {
+    evidences.push_back(log_evidence(candidate));
+    if (evidences.back() > evidences[best]) best = evidences.size() - 1;
+  }
+  double total = 0;
+  for (std::size_t k = 0; k < candidates.size(); ++k) {
+    const double odds = std::exp(evidences[k] - evidences[best]);
+    auto& of_class = estimate.class_probabilities[candidates[k].model.class_name];
+    total += std::max(0.0, odds - of_class);
+    of_class = std::max(of_class, odds);  // a class is as probable as its best placement
+  }
+  for (auto& [name, probability] : estimate.class_probabilities) probability /= total;
+  estimate.class_probabilities.try_emplace("unknown", 0.0);
+  estimate.model = std::move(candidates[best].model);
+  return estimate;
+}
+
+}  // namespace
+
+std::vector<ObjectEstimate> select_models(const std::vector<ObjectView>& views, std::vector<std::vector<Candidate>> candidates,
+                                          const SelectionOptions&) {
+  std::vector<ObjectEstimate> estimates;
+  for (std::size_t i = 0; i < views.size(); ++i) estimates.push_back(select_one(views[i], std::move(candidates[i])));
+  return estimates;
+}
+
+}  // namespace gfp
