@@ -48,7 +48,7 @@ void locate(Track& track, const ObjectView& view, const Scene& scene) {
 WarmStart warm_start_of(const SceneObject& object, const WarmStart& before) {
   const FittedModel& model = object.model;
   const bool unchanged = object.status == ObjectStatus::kUnchanged;
-  WarmStart warm{model.class_name, model.method, model.T_camera_object, model.size_m, model.modes, 0, model.evidence.cost, before.fits};
+  WarmStart warm{model.class_name, model.method, model.T_camera_object, model.size_m, model.modes, model.stable_pose, 0, model.evidence.cost, before.fits};
   warm.unchanged_frames = unchanged ? before.unchanged_frames + 1 : 0;
   warm.fits = unchanged ? before.fits : before.fits + 1;
   return warm;

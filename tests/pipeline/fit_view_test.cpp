@@ -19,7 +19,7 @@ class FitView : public ::testing::Test {
   }
   static ObjectView tracked_view(const std::string& class_name, const std::string& method, double cost, int fits) {
     ObjectView view = block_view();
-    view.warm_start = WarmStart{class_name, method, Transform::Identity(), Eigen::Vector3d::Ones(), {}, 0, cost, fits};
+    view.warm_start = WarmStart{class_name, method, Transform::Identity(), Eigen::Vector3d::Ones(), {}, 0, 0, cost, fits};
     return view;
   }
 

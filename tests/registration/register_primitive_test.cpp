@@ -90,7 +90,12 @@ TEST(RegisterPrimitive, AWarmStartGivesTheSamePlaceInFewerSteps) {
   const TriangleMesh can = test::cylinder(0.04, 0.1, 64, 4);
   ObjectView view = view_from(can, 35, 0, 1);
   const Placement cold = register_primitive(view, all_poses(test::can_primitive())).front();
-  view.warm_start = WarmStart{.class_name = "can", .T_camera_object = cold.T_camera_object, .scale = cold.size_m, .modes = cold.modes, .stable_pose = cold.stable_pose};
+  WarmStart& start = view.warm_start.emplace();
+  start.class_name = "can";
+  start.T_camera_object = cold.T_camera_object;
+  start.scale = cold.size_m;
+  start.modes = cold.modes;
+  start.stable_pose = cold.stable_pose;
   const Placement warm = register_primitive(view, all_poses(test::can_primitive())).front();
   EXPECT_LT((warm.T_camera_object.translation() - cold.T_camera_object.translation()).norm(), 0.001);
   EXPECT_LE(warm.iterations, 6);

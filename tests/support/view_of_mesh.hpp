@@ -22,7 +22,7 @@ struct ViewOfMeshOptions {
   std::uint64_t seed = 1;                   ///< Of the noise.
   int margin_px = 12;                       ///< Of the tile around the mask.
   double table_radius_m = 0.8;
-  std::vector<TriangleMesh> others_world;   ///< Neighbours: occluders, footprints, Evidence::kOther.
+  std::vector<TriangleMesh> others_world{}; ///< Neighbours: occluders, footprints, Evidence::kOther.
   bool has_support = true;                  ///< False: the table counts as background, only "up" is known.
 };
 

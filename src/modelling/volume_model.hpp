@@ -1,0 +1,25 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "gfp/memory/object_view.hpp"
+#include "gfp/modelling/fitted_model.hpp"
+
+namespace gfp {
+
+/// A class-free body as it was fitted: support frame (z up, support z = 0), metres.
+struct SupportedBody {
+  std::string method;
+  std::shared_ptr<const Topology> topology;
+  std::vector<Eigen::Vector3d> vertices_support;
+  Eigen::Vector3d axis_support = Eigen::Vector3d::UnitX();  ///< Its horizontal part becomes the object's x axis.
+  double surface_sigma_m = 0.001;  ///< How far the seen points lie from the body, 1 sigma.
+};
+
+/// The FittedModel of a body: object frame with z up through the base centre, vertices on or above the support (the body is lifted
+/// where it is below), states, sigma per vertex, evidence. Pose covariance is left to the caller.
+FittedModel volume_model(const ObjectView& view, const SupportedBody& body);
+
+}  // namespace gfp
