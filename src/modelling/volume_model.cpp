@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "gfp/modelling/evaluate_fit.hpp"
+
 namespace gfp {
 namespace {
 
@@ -68,6 +70,7 @@ FittedModel volume_model(const ObjectView& view, const SupportedBody& body) {
   mark_seen(view, model.mesh_camera(), model.states);
   model.sigma_m = sigma_of(model.vertices, model.states, body.surface_sigma_m);
   model.yaw_low_rad = model.yaw_high_rad = 0;
+  model.evidence = evaluate_fit(view, model.mesh_camera().vertices, model.topology->triangles);
   return model;
 }
 
