@@ -60,7 +60,29 @@ FamilyShape make_plate(ParameterDraw& draw) {
     profile.push_back({radius * share, under(share) + t, {Part::kInnerWall}});
   }
   append_disc(profile, radius * well, t, Part::kInnerWall, true);
-  return build_lathe(profile, 28, rim, {width, width, height});
+  return build_lathe(profile, 24, rim, {width, width, height});
+}
+
+FamilyShape make_pan(ParameterDraw& draw) {
+  const double width = draw.log_range(0.14, 0.32);
+  Vessel pan;
+  pan.height_m = width * draw.log_range(0.16, 0.5);
+  const double radius = 0.5 * width, base = draw.range(0.72, 0.98);
+  pan.radius_m = Spline({0, 0.5, 1}, {radius * base, radius * mix(base, 1.0, draw.range(0.45, 0.85)), radius});
+  pan.thickness_m = width * draw.log_range(0.012, 0.024);
+  pan.floor_m = pan.thickness_m * draw.range(1.0, 1.8);
+  pan.base_edge_m = std::min(pan.height_m * draw.range(0.05, 0.12), pan.floor_m + 1.2 * pan.thickness_m);  // the wall stays outside the floor
+  pan.outer_rows = 7;
+  pan.inner_rows = 4;
+  pan.columns = 24;
+  BarHandle bar;
+  bar.half_thickness_m = std::min(0.11 * pan.height_m, width * draw.range(0.02, 0.034));
+  bar.root_m = pan.height_m * draw.range(0.55, 0.76);
+  bar.length_m = width * draw.range(0.55, 1.0);
+  bar.rise_m = bar.length_m * draw.range(-0.02, 0.3);
+  bar.half_width_m = width * draw.range(0.04, 0.07);
+  pan.bar = bar;
+  return build_vessel(pan);
 }
 
 }  // namespace gfp

@@ -39,7 +39,7 @@ class ParameterDraw {
 struct FamilySpec {
   std::string_view name;
   FamilyShape (*make)(ParameterDraw& draw);
-  std::vector<std::string> aliases;
+  std::vector<std::string> aliases = {};
   Symmetry symmetry;
   int genus = 0;
   bool hollow = false;
@@ -71,5 +71,18 @@ FamilyShape make_can(ParameterDraw& draw);
 FamilyShape make_bottle(ParameterDraw& draw);
 FamilyShape make_jar(ParameterDraw& draw);
 FamilyShape make_box(ParameterDraw& draw);
+FamilyShape make_pan(ParameterDraw& draw);
+FamilyShape make_ball(ParameterDraw& draw);
+FamilyShape make_banana(ParameterDraw& draw);
+FamilyShape make_screwdriver(ParameterDraw& draw);
+FamilyShape make_knife(ParameterDraw& draw);
+FamilyShape make_spoon(ParameterDraw& draw);
+FamilyShape make_hammer(ParameterDraw& draw);
+FamilyShape make_drill(ParameterDraw& draw);
+FamilyShape make_clamp(ParameterDraw& draw);
+FamilyShape make_shoe(ParameterDraw& draw);
+FamilyShape make_carton(ParameterDraw& draw);
+FamilyShape make_spray_bottle(ParameterDraw& draw);
+FamilyShape make_toy_car(ParameterDraw& draw);
 
 }  // namespace gfp

@@ -46,11 +46,11 @@ FamilyShape make_jug(ParameterDraw& draw) {
   const double base = draw.range(0.62, 1.0), belly = draw.range(0.9, 1.1), shoulder = draw.range(0.72, 1.0), neck = draw.range(0.55, 0.85);
   jug.radius_m = Spline({0, 0.32, 0.66, 0.85, 1}, {0.5 * width * base, 0.5 * width * belly, 0.5 * width * shoulder, 0.5 * width * neck,
                                                    0.5 * width * (neck + draw.range(-0.03, 0.14))});
-  jug.thickness_m = width * draw.log_range(0.018, 0.04);
+  jug.thickness_m = width * draw.log_range(0.026, 0.045);
   jug.floor_m = jug.thickness_m * draw.range(1.0, 1.8);
   jug.base_edge_m = width * draw.range(0.015, 0.05);
   jug.outer_rows = 13;
-  jug.inner_rows = 10;
+  jug.inner_rows = 11;
   LoopHandle handle;
   handle.low_m = jug.height_m * draw.range(0.28, 0.4);
   handle.high_m = jug.height_m * draw.range(0.72, 0.86);
@@ -60,6 +60,7 @@ FamilyShape make_jug(ParameterDraw& draw) {
   handle.squareness = draw.range(1.9, 2.8);
   handle.skew = draw.range(-0.05, 0.3);
   handle.sections = 11;
+  handle.rows_between = 3;
   jug.handle = handle;
   jug.lip = Lip{width * draw.range(0.05, 0.2), draw.range(0.55, 0.9), draw.range(0.6, 0.8)};
   return build_vessel(jug);
@@ -89,7 +90,6 @@ FamilyShape make_vase(ParameterDraw& draw) {
   vase.base_edge_m = width * draw.range(0.015, 0.04);
   vase.outer_rows = 14;
   vase.inner_rows = 12;
-  vase.columns = 20;
   return build_vessel(vase);
 }
 
@@ -124,7 +124,7 @@ FamilyShape make_wine_glass(ParameterDraw& draw) {
     profile.push_back({radius((z - bottom) / bowl) - t * (1 + 1.2 * smooth_step(0.5, 0.0, (z - bottom) / bowl)), z, {i == 0 ? Part::kRim : Part::kInnerWall}});
   }
   append_disc(profile, 0.75 * profile.back().radius_m, floor, Part::kInnerWall, true);
-  return build_lathe(profile, 20, rim, {2 * belly, 2 * belly, height});
+  return build_lathe(profile, 24, rim, {2 * belly, 2 * belly, height});
 }
 
 }  // namespace gfp

@@ -18,6 +18,16 @@ struct LoopHandle {
   double squareness = 2;               ///< 2: round (C); 3: square (D).
   double skew = 0;                     ///< > 0: bulges above (ear).
   int sections = 10;
+  int rows_between = 1;                ///< Rows of the wall between the two roots.
+};
+
+/// A straight bar in the plane y = 0 that grows from the wall at +x: a pan's handle.
+struct BarHandle {
+  double root_m = 0;                   ///< Height of its root.
+  double length_m = 0;
+  double rise_m = 0;                   ///< Of its end over its root.
+  double half_thickness_m = 0;         ///< Vertical.
+  double half_width_m = 0;             ///< Along y, at the end; narrower at the root.
 };
 
 /// A pouring lip at -x: wall and rim are drawn outwards near the rim.
@@ -34,10 +44,10 @@ struct Vessel {
   double thickness_m = 0.004;          ///< Horizontal.
   double floor_m = 0.006;
   double base_edge_m = 0.003;          ///< Rounding of the base's edge.
-  double base_dome_m = 0;              ///< How far the base's middle is drawn in.
   int columns = 24;
   int outer_rows = 11, inner_rows = 7;
-  std::optional<LoopHandle> handle;
+  std::optional<LoopHandle> handle;    ///< At most one of the two.
+  std::optional<BarHandle> bar;
   std::optional<Lip> lip;
 };
 
