@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 #include "registration/class_prior.hpp"
 #include "registration/pose_search.hpp"
@@ -15,6 +16,7 @@ namespace gfp {
 namespace {
 
 constexpr int kSearchCells = 300;      ///< Object cells of the search grid.
+constexpr double kHopeless = 0.6;       ///< Score by which a coarse placement may trail the best and still be refined finely.
 constexpr double kConvergedStep = 2e-4;///< Metres, radians and log sizes alike: well below the noise.
 
 /// Gauss-Newton with annealed robust scale; keeps the best state seen. Returns the number of steps.
@@ -46,6 +48,14 @@ int refine(VisibleFit& fit, ScoredState& best, double coarse_m, double fine_m, i
 void keep_best(std::vector<ScoredState>& states, std::size_t count) {
   std::stable_sort(states.begin(), states.end(), [](const ScoredState& a, const ScoredState& b) { return a.score < b.score; });
   if (states.size() > count) states.resize(count);
+}
+
+/// A hypothesis that names no stable pose leaves all of them open.
+std::vector<int> poses_to_try(const Hypothesis& hypothesis) {
+  if (!hypothesis.stable_poses.empty()) return hypothesis.stable_poses;
+  std::vector<int> all(hypothesis.primitive->stable_poses.size());
+  std::iota(all.begin(), all.end(), 0);
+  return all;
 }
 
 std::optional<ScoredState> warm_state(const ObjectView& view, const Primitive& primitive) {
@@ -119,19 +129,22 @@ std::vector<Placement> register_primitive(const ObjectView& view, const Hypothes
   if (auto warm = warm_state(view, primitive)) {
     states.push_back(*warm);
     refine_on_fine_grid(0.006, std::min(6, options.max_iterations));
-    if (states.front().score > kStillGood) states.clear();
+    if (states.front().score > kStillGood && !hypothesis.stable_poses.empty()) states.clear();
   }
   if (states.empty()) {
     const ObservedTile coarse_tile = observe(view, kSearchCells);
     VisibleFit coarse(coarse_tile, primitive, view.has_support);
     const ObservedExtent extent = observed_extent(view, coarse_tile);
-    for (const int pose : hypothesis.stable_poses) {
+    for (const int pose : poses_to_try(hypothesis)) {
       auto found = search_yaws(coarse, extent, primitive, pose, options.yaw_steps);
-      keep_best(found, static_cast<std::size_t>(2 * options.keep));
+      keep_best(found, static_cast<std::size_t>(options.keep + 1));
       states.insert(states.end(), found.begin(), found.end());
     }
+    keep_best(states, static_cast<std::size_t>(2 * options.keep));
     for (auto& scored : states) refine(coarse, scored, 0.02, 0.008, 5, converged);
     keep_best(states, static_cast<std::size_t>(options.keep));
+    const double best_score = states.front().score;
+    std::erase_if(states, [&](const ScoredState& scored) { return scored.score > best_score + kHopeless; });
     refine_on_fine_grid(0.012, options.max_iterations);
     keep_best(states, static_cast<std::size_t>(options.keep));
   }

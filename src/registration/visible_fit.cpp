@@ -18,6 +18,17 @@ double geman_mcclure(double residual, double scale) {
   return 1.0 / (denominator * denominator);
 }
 
+/// matrix += weight row row^T (lower triangle, rows of `size`), gradient += scaled_residual row.
+__attribute__((target_clones("arch=x86-64-v3", "default"))) void add_outer_product(const double* row, int size, double weight, double scaled_residual,
+                                                                                   double* matrix, double* gradient) {
+  for (int i = 0; i < size; ++i) {
+    const double scaled = weight * row[i];
+    double* target = matrix + i * size;
+    for (int j = 0; j <= i; ++j) target[j] += scaled * row[j];
+    gradient[i] += scaled_residual * row[i];
+  }
+}
+
 double root_of_squares(double a, double b) { return std::sqrt(a * a + b * b); }
 
 /// The nearest cell that the model covers, in growing squares; -1 where there is none within reach.
@@ -135,8 +146,7 @@ void VisibleFit::add(const SurfacePoint& p, const Vector3d& direction, double re
     row_[PoseState::kShape + k] = scaled_direction.dot(p.weights[0] * mode[at(p.vertices[0])] + p.weights[1] * mode[at(p.vertices[1])] +
                                                        p.weights[2] * mode[at(p.vertices[2])]);
   }
-  information_.selfadjointView<Eigen::Lower>().rankUpdate(row_, weight);
-  gradient_ += (weight * residual) * row_;
+  add_outer_product(row_.data(), static_cast<int>(row_.size()), weight, weight * residual, normal_matrix_.data(), gradient_.data());
 }
 
 void VisibleFit::add_surface_residuals(const FitScale& scale) {
@@ -184,16 +194,19 @@ void VisibleFit::add_silhouette_residuals(const FitScale& scale) {
 }
 
 void VisibleFit::add_contact_and_priors(const FitScale& scale) {
-  const double tilt = has_support_ ? scale.tilt_sigma_rad : 0.35;
-  information_(3, 3) += 1.0 / (tilt * tilt);
-  information_(4, 4) += 1.0 / (tilt * tilt);
-  information_(5, 5) += 1e-2;  // keeps the yaw of a body of revolution where it is
   if (has_support_) {
     std::size_t lowest = 0;
     for (std::size_t i = 1; i < support_.size(); ++i)
       if (support_[i].z() < support_[lowest].z()) lowest = i;
     add(vertex_point(lowest), Vector3d::UnitZ(), support_[lowest].z(), 1.0 / (scale.contact_sigma_m * scale.contact_sigma_m));
   }
+  using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  const int unknowns = state_.unknowns();
+  information_ = Eigen::Map<const RowMajor>(normal_matrix_.data(), unknowns, unknowns).selfadjointView<Eigen::Lower>();
+  const double tilt = has_support_ ? scale.tilt_sigma_rad : 0.35;
+  information_(3, 3) += 1.0 / (tilt * tilt);
+  information_(4, 4) += 1.0 / (tilt * tilt);
+  information_(5, 5) += 1e-2;  // keeps the yaw of a body of revolution where it is
   information_.block<3, 3>(PoseState::kPose, PoseState::kPose) += size_information_;
   gradient_.segment<3>(PoseState::kPose) += size_information_ * (state_.log_size - primitive_.log_size_mean);
   const Eigen::Index modes = state_.modes.size();
@@ -203,13 +216,12 @@ void VisibleFit::add_contact_and_priors(const FitScale& scale) {
 
 Eigen::VectorXd VisibleFit::step(const FitScale& scale, double damping) {
   const int unknowns = state_.unknowns();
-  information_.setZero(unknowns, unknowns);
+  normal_matrix_.assign(static_cast<std::size_t>(unknowns * unknowns), 0.0);
   gradient_.setZero(unknowns);
   row_.setZero(unknowns);
   add_surface_residuals(scale);
   add_silhouette_residuals(scale);
   add_contact_and_priors(scale);
-  information_.triangularView<Eigen::StrictlyUpper>() = information_.transpose();
   Eigen::MatrixXd damped = information_;
   damped.diagonal() *= 1.0 + damping;
   Eigen::VectorXd step = -damped.ldlt().solve(gradient_);

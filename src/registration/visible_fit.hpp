@@ -74,6 +74,7 @@ class VisibleFit {
   Eigen::Vector3d size_ = Eigen::Vector3d::Ones();
   std::vector<Eigen::Vector3d> canonical_, support_, camera_;
   DepthTile rendered_;
+  std::vector<double> normal_matrix_;            ///< Lower triangle, row by row.
   Eigen::MatrixXd information_;
   Eigen::VectorXd gradient_, row_;
 };

@@ -11,8 +11,8 @@ namespace gfp {
 struct RegistrationOptions {
   int yaw_steps = 24;          ///< Of the search; fewer where the class is symmetric.
   int keep = 3;                ///< Placements that are refined fully.
-  int max_iterations = 20;     ///< Of the refinement.
-  int sample_pixels = 1200;    ///< Object pixels used in the refinement.
+  int max_iterations = 14;     ///< Of the refinement.
+  int sample_pixels = 700;    ///< Object pixels used in the refinement.
 };
 
 template <class Visitor>
