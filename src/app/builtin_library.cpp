@@ -1,21 +1,37 @@
 #include "app/builtin_library.hpp"
 
+#include <cassert>
+#include <map>
 #include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "gfp/primitive/families.hpp"
+#include "wire/embedded_primitives.hpp"
+#include "wire/primitive_file.hpp"
 
 namespace gfp {
 
 const PrimitiveLibrary& builtin_library() {
   static const PrimitiveLibrary library = [] {
+    auto built_in = wire::decode_primitives(embedded_primitives());
+    assert(built_in);
     std::vector<PrimitivePtr> primitives;
-    for (const std::string& name : family_names()) primitives.push_back(std::make_shared<const Primitive>(build_family_primitive(name)));
+    for (auto& primitive : *built_in) primitives.push_back(std::make_shared<const Primitive>(std::move(primitive)));
     return PrimitiveLibrary(std::move(primitives));
   }();
   return library;
+}
+
+Result<PrimitiveLibrary> library_with(const std::filesystem::path& folder) {
+  auto own = wire::read_primitive_folder(folder);
+  if (!own) return tl::unexpected(own.error());
+  std::map<std::string, PrimitivePtr> by_class;
+  for (const PrimitivePtr& primitive : builtin_library().all()) by_class[primitive->class_name] = primitive;
+  for (auto& primitive : *own) by_class[primitive.class_name] = std::make_shared<const Primitive>(primitive);
+  std::vector<PrimitivePtr> primitives;
+  for (auto& [name, primitive] : by_class) primitives.push_back(std::move(primitive));
+  return PrimitiveLibrary(std::move(primitives));
 }
 
 Result<PrimitivePtr> find_class(const PrimitiveLibrary& library, std::string_view class_name) {
