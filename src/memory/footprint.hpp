@@ -8,10 +8,6 @@
 
 namespace gfp {
 
-/// Corners of the smallest convex polygon around `points`, counter-clockwise, no three on a line (Andrew, IPL 1979).
-/// Fewer than three distinct points come back as they are.
-std::vector<Eigen::Vector2d> convex_hull(std::vector<Eigen::Vector2d> points);
-
 /// Convex outline of what was seen of a segment, dropped onto the support plane; support frame, metres.
 /// Looks at about 2000 of its pixels.
 std::vector<Eigen::Vector2d> footprint(const Segment& segment, const OrganizedCloud& cloud, const Transform& T_camera_support);

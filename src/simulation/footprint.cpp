@@ -25,23 +25,6 @@ double gap_beyond_edges(const Polygon& a, const Polygon& b) {
 
 }  // namespace
 
-Polygon convex_hull(std::vector<Vector2d> points) {
-  const auto before = [](const Vector2d& a, const Vector2d& b) { return a.x() < b.x() || (a.x() == b.x() && a.y() < b.y()); };
-  std::sort(points.begin(), points.end(), before);
-  points.erase(std::unique(points.begin(), points.end()), points.end());
-  if (points.size() < 3) return points;
-  Polygon hull;
-  const auto add = [&hull](const Vector2d& point, std::size_t keep) {
-    while (hull.size() >= keep + 2 && cross(hull.back() - hull[hull.size() - 2], point - hull.back()) <= 0) hull.pop_back();
-    hull.push_back(point);
-  };
-  for (const Vector2d& point : points) add(point, 0);
-  const std::size_t lower = hull.size() - 1;
-  for (auto it = points.rbegin() + 1; it != points.rend(); ++it) add(*it, lower);
-  hull.pop_back();
-  return hull;
-}
-
 double separation(const Polygon& a, const Polygon& b) { return std::max(gap_beyond_edges(a, b), gap_beyond_edges(b, a)); }
 
 Vector2d nearest_point(const Polygon& polygon, const Vector2d& point) {

@@ -3,13 +3,12 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "gfp/core/convex_hull.hpp"
+
 namespace gfp {
 
 /// Convex polygon, counter-clockwise, without collinear corners.
 using Polygon = std::vector<Eigen::Vector2d>;
-
-/// Andrew's monotone chain.
-Polygon convex_hull(std::vector<Eigen::Vector2d> points);
 
 /// Largest gap along a direction perpendicular to an edge of either: positive where the polygons are apart (a lower bound of
 /// their distance), negative where they overlap.

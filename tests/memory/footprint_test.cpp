@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "gfp/core/convex_hull.hpp"
 #include "gfp/core/random.hpp"
 #include "support/block_scene.hpp"
 
