@@ -52,7 +52,6 @@ void compare_surfaces(const TruthView& truth, const TriangleMesh& fit_object, co
 }
 
 void compare_volumes(const TruthShape& truth, const TriangleMesh& fit_object, FitMetrics& metrics) {
-  metrics.volume_error = 1;
   const auto solid = fill_solid(fit_object, truth.solid.filled.voxel_m);
   if (!solid) return;
   metrics.iou_filled = intersection_over_union(truth.solid.filled, solid->filled);
@@ -108,11 +107,7 @@ FitMetrics measure_fit(const TruthView& truth, const FittedModel& fit, std::span
   FitMetrics metrics;
   metrics.fit_similarity_true = fit_similarity(truth.shape->tree, points_object);
   const TriangleMesh mesh = fit.topology ? transformed(fit.mesh_camera(), T_object_camera) : TriangleMesh{};
-  if (!usable(mesh)) {
-    metrics.volume_error = 1;
-    metrics.chamfer_m = metrics.hidden_chamfer_m = metrics.observed_median_m = std::numeric_limits<double>::infinity();
-    return metrics;
-  }
+  if (!usable(mesh)) return metrics;
   const TriangleTree tree(mesh);
   compare_volumes(*truth.shape, mesh, metrics);
   compare_surfaces(truth, mesh, tree, metrics);

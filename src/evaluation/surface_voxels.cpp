@@ -32,7 +32,31 @@ struct Projection {
   }
 };
 
+void add_row(const std::uint64_t* from, std::uint64_t* to, int words) {
+  for (int i = 0; i < words; ++i) to[i] |= from[i];
+}
+
 }  // namespace
+
+VoxelBits dilated(const VoxelBits& bits) {
+  VoxelBits result = bits;
+  const int words = bits.words_per_row;
+  for (int z = 0; z < bits.size.z(); ++z)
+    for (int y = 0; y < bits.size.y(); ++y) {
+      const std::uint64_t* row = bits.row(y, z);
+      std::uint64_t* out = result.row(y, z);
+      for (int i = 0; i < words; ++i) {
+        out[i] |= (row[i] << 1) | (row[i] >> 1);
+        if (i > 0) out[i] |= row[i - 1] >> 63;
+        if (i + 1 < words) out[i] |= row[i + 1] << 63;
+      }
+      if (y > 0) add_row(bits.row(y - 1, z), out, words);
+      if (y + 1 < bits.size.y()) add_row(bits.row(y + 1, z), out, words);
+      if (z > 0) add_row(bits.row(y, z - 1), out, words);
+      if (z + 1 < bits.size.z()) add_row(bits.row(y, z + 1), out, words);
+    }
+  return result;
+}
 
 void mark_triangle(const Vec& a, const Vec& b, const Vec& c, VoxelBits& bits) {
   const std::array<Vec, 3> corners{a, b, c};
@@ -57,8 +81,8 @@ void mark_triangle(const Vec& a, const Vec& b, const Vec& c, VoxelBits& bits) {
         const double begin = std::clamp(std::min(s, t), -1.0, x1 + 1.0), end = std::clamp(std::max(s, t), -1.0, x1 + 1.0);
         x0 = std::max(x0, static_cast<int>(std::ceil(begin - kRounding)));
         x1 = std::min(x1, static_cast<int>(std::floor(end + kRounding)));
-      } else if (rest + upper < 0 || rest + lower > 0) {
-        continue;
+      } else if (const double tilt = std::abs(normal.x()) * (last.x() + 1); rest + upper + tilt < 0 || rest + lower - tilt > 0) {
+        continue;  // nearly parallel to x: the plane does not move by more than `tilt` over the whole row
       }
       std::uint64_t* row = bits.row(y, z);
       for (int x = x0; x <= x1; ++x)

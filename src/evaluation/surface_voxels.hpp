@@ -24,6 +24,9 @@ struct VoxelBits {
   const std::uint64_t* row(int y, int z) const { return const_cast<VoxelBits*>(this)->row(y, z); }
 };
 
+/// Every set voxel and its six neighbours.
+VoxelBits dilated(const VoxelBits& bits);
+
 /// Sets every voxel that the triangle touches. Corners in voxels relative to the box's first voxel; all inside the box.
 void mark_triangle(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c, VoxelBits& bits);
 

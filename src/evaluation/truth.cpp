@@ -25,11 +25,22 @@ SurfaceSamples keep_reachable(const SurfaceSamples& samples, const VoxelSolid& m
   return kept;
 }
 
+// A scan with a pinhole holds no water; closing its pinholes must not change any other mesh.
+Result<FilledSolid> fill_scan(const TriangleMesh& mesh, double voxel_m) {
+  constexpr double kLeakFactor = 1.2;
+  auto plain = fill_solid(mesh, voxel_m);
+  if (!plain) return plain;
+  auto sealed = fill_solid(mesh, voxel_m, true);
+  if (!sealed) return sealed;
+  const bool leaks = sealed->filled.volume_m3() > kLeakFactor * plain->filled.volume_m3();
+  return leaks ? sealed : plain;
+}
+
 }  // namespace
 
 Result<TruthShape> make_truth_shape(std::string name, std::string class_name, TriangleMesh mesh, const TruthOptions& options) {
   face_outwards(mesh);
-  auto solid = fill_solid(mesh, options.voxel_m);
+  auto solid = fill_scan(mesh, options.voxel_m);
   if (!solid) return tl::unexpected(Error{solid.error().code, name + ": " + solid.error().what});
   SurfaceSamples samples = keep_reachable(sample_surface(mesh, options.samples, options.seed), solid->material);
   if (samples.points.empty()) return failure(ErrorCode::kDegenerateGeometry, name + ": surface area 0 m^2, expected > 0");

@@ -35,7 +35,7 @@ std::int64_t common_length(std::span<const Run> a, std::span<const Run> b) {
   return sum;
 }
 
-// The empty stretches of the box, row by row; where each is in the flood.
+// The stretches of unset voxels of a box, row by row; where each is in the flood.
 struct AirRuns {
   enum State : std::uint8_t { kEnclosed, kWet, kDry };  // wet: reached, but only by rising above it
   std::vector<std::int32_t> offsets, first, last, row;
@@ -106,25 +106,35 @@ void flood(const Eigen::Vector3i& size, AirRuns& air) {
   }
 }
 
-// All voxels of the box that are not in an air run for which `open` holds.
+// The voxels of all air runs for which `open` holds.
 template <class Open>
-VoxelSolid complement(const VoxelBits& surface, const AirRuns& air, double voxel_m, Open&& open) {
-  VoxelSolid solid{voxel_m, surface.low, surface.size, {0}, {}};
-  for (std::size_t row = 0; row + 1 < air.offsets.size(); ++row) {
-    int x = 0;
-    const auto close = [&](int end) {
-      if (end > x) solid.runs.push_back({surface.low.x() + x, surface.low.x() + end});
-    };
-    for (std::int32_t i = air.offsets[row]; i < air.offsets[row + 1]; ++i) {
-      const std::size_t run = static_cast<std::size_t>(i);
-      if (!open(air.state[run])) continue;
-      close(air.first[run]);
-      x = air.last[run];
+VoxelBits open_voxels(const VoxelBits& box, const AirRuns& air, Open&& open) {
+  VoxelBits bits(box.low, box.size);
+  for (std::size_t run = 0; run < air.state.size(); ++run) {
+    if (!open(air.state[run])) continue;
+    std::uint64_t* words = bits.words.data() + static_cast<std::size_t>(air.row[run]) * static_cast<std::size_t>(bits.words_per_row);
+    for (int x = air.first[run]; x < air.last[run];) {  // whole words at a time
+      const int end = std::min(air.last[run], (x | 63) + 1), count = end - x;
+      words[x >> 6] |= (count == 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << count) - 1) << (x & 63);
+      x = end;
     }
-    close(surface.size.x());
-    solid.offsets.push_back(static_cast<std::int32_t>(solid.runs.size()));
   }
+  return bits;
+}
+
+// All voxels of the box that are not open.
+VoxelSolid complement(const VoxelBits& open, double voxel_m) {
+  VoxelSolid solid{voxel_m, open.low, open.size, {0}, {}};
+  const AirRuns closed = find_air(open);  // the stretches between open voxels
+  for (std::size_t i = 0; i < closed.first.size(); ++i) solid.runs.push_back({open.low.x() + closed.first[i], open.low.x() + closed.last[i]});
+  solid.offsets = closed.offsets;
   return solid;
+}
+
+// Grows what the flood reached back by the voxel that sealing took, but not into the surface.
+void grow_back(const VoxelBits& surface, VoxelBits& open) {
+  open = dilated(open);
+  for (std::size_t i = 0; i < open.words.size(); ++i) open.words[i] &= ~surface.words[i];
 }
 
 }  // namespace
@@ -151,13 +161,13 @@ double VoxelSolid::volume_m3() const {
   return (static_cast<double>(voxels()) - 0.5 * static_cast<double>(faces)) * voxel_m * voxel_m * voxel_m;
 }
 
-Result<FilledSolid> fill_solid(const TriangleMesh& mesh, double voxel_m) {
+Result<FilledSolid> fill_solid(const TriangleMesh& mesh, double voxel_m, bool seal_pinholes) {
   if (mesh.triangles.empty()) return failure(ErrorCode::kInvalidArgument, "mesh has 0 triangles, expected at least 1");
   if (!(voxel_m > 0)) return failure(ErrorCode::kInvalidArgument, "voxel_m = " + std::to_string(voxel_m) + ", expected > 0");
   for (const auto& v : mesh.vertices)
     if (!v.allFinite()) return failure(ErrorCode::kInvalidArgument, "mesh has a vertex that is not finite");
   const Bounds box = bounds(mesh.vertices);
-  const Eigen::Array3d low = (box.low / voxel_m).array().floor() - 1, high = (box.high / voxel_m).array().floor() + 2;
+  const Eigen::Array3d low = (box.low / voxel_m).array().floor() - 2, high = (box.high / voxel_m).array().floor() + 3;
   if (low.abs().maxCoeff() > 1e8 || high.abs().maxCoeff() > 1e8 || (high - low).prod() > static_cast<double>(kMaxVoxels))
     return failure(ErrorCode::kTooLarge, "mesh spans " + std::to_string(box.size().maxCoeff()) + " m, expected at most 2^30 voxels of " + std::to_string(voxel_m) + " m");
   VoxelBits surface(low.cast<int>(), (high - low).cast<int>());
@@ -165,10 +175,15 @@ Result<FilledSolid> fill_solid(const TriangleMesh& mesh, double voxel_m) {
     return (mesh.vertices[static_cast<std::size_t>(vertex)] / voxel_m).array() - low;
   };
   for (const Triangle& t : mesh.triangles) mark_triangle(in_voxels(t[0]), in_voxels(t[1]), in_voxels(t[2]), surface);
-  AirRuns air = find_air(surface);
+  AirRuns air = find_air(seal_pinholes ? dilated(surface) : surface);
   flood(surface.size, air);
-  return FilledSolid{complement(surface, air, voxel_m, [](AirRuns::State s) { return s != AirRuns::kEnclosed; }),
-                     complement(surface, air, voxel_m, [](AirRuns::State s) { return s == AirRuns::kDry; })};
+  VoxelBits reached = open_voxels(surface, air, [](AirRuns::State s) { return s != AirRuns::kEnclosed; });
+  VoxelBits dry = open_voxels(surface, air, [](AirRuns::State s) { return s == AirRuns::kDry; });
+  if (seal_pinholes) {
+    grow_back(surface, reached);
+    grow_back(surface, dry);
+  }
+  return FilledSolid{complement(reached, voxel_m), complement(dry, voxel_m)};
 }
 
 double filled_volume_m3(const TriangleMesh& mesh, const FilledSolid& solid) {

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
 #include <numbers>
 
@@ -111,6 +112,28 @@ TEST(FillSolid, InnerShellsAndHairlineCracksDoNotMatter) {
   EXPECT_NEAR(fill(cracked).material.volume_m3() / (0.06 * 0.06 * 0.1003), 1, 0.01);
 }
 
+// A pipe of 2.9 mm, two voxels, through the floor of a cup: it runs dry unless pinholes are sealed, and sealing changes nothing else.
+TEST(FillSolid, PinholesCanBeSealed) {
+  const TriangleMesh leaky = test::revolve({{0.00145, 0}, {0.04, 0}, {0.04, 0.1}, {0.036, 0.1}, {0.036, 0.005}, {0.00145, 0.005}}, kSegments);
+  TriangleMesh open = leaky;  // without the fans that revolve() closes the pipe's ends with
+  open.triangles.erase(std::remove_if(open.triangles.begin(), open.triangles.end(), [&](const Triangle& t) {
+    return *std::max_element(t.begin(), t.end()) >= static_cast<std::int32_t>(open.vertices.size()) - 2; }), open.triangles.end());
+  for (std::int32_t s = 0; s < kSegments; ++s) {  // the pipe's wall
+    const std::int32_t next = (s + 1) % kSegments, top = 5 * kSegments;
+    open.triangles.push_back({s, top + s, next});
+    open.triangles.push_back({next, top + s, top + next});
+  }
+  ASSERT_TRUE(examine_topology(open).closed);
+  EXPECT_FALSE(fill(open).filled.contains({0.01, 0, 0.05}));
+  const auto sealed = fill_solid(open, 0.001, true);
+  ASSERT_TRUE(sealed.has_value());
+  EXPECT_NEAR(sealed->filled.volume_m3() / (disc_area(0.04) * 0.1), 1, 0.01);
+
+  const TriangleMesh whole = cup(0.04, 0.1, 0.004, 0.005);
+  EXPECT_NEAR(fill_solid(whole, 0.001, true)->filled.volume_m3() / fill(whole).filled.volume_m3(), 1, 0.003);
+  EXPECT_NEAR(fill_solid(whole, 0.001, true)->material.volume_m3() / fill(whole).material.volume_m3(), 1, 0.02);
+}
+
 // A box with its lid missing is a cup: filled, but not material.
 TEST(FillSolid, AnOpenSurfaceIsAThinShell) {
   TriangleMesh open = test::box({0.06, 0.06, 0.05});
@@ -150,6 +173,12 @@ TEST(MarkTriangle, AgreesWithClippingTheTriangleToEachVoxel) {
     if (trial % 6 == 0) corners[2].x() = corners[1].x() = corners[0].x();
     test::expect_marks_exactly(corners, trial);
   }
+}
+
+// The normal's x is below the rounding slack, yet over the row the plane moves by more than that.
+TEST(MarkTriangle, FindsTheVoxelsOfATriangleThatLeansByARounding) {
+  std::array<Eigen::Vector3d, 3> corners{Eigen::Vector3d(8.85, 1.65, 1), {7.63, 2.27, 1}, {9.25, 9.55, 1 + 1.6e-8}};
+  test::expect_marks_exactly(corners, 0);
 }
 
 }  // namespace
