@@ -78,7 +78,7 @@ Result<CameraFile> load_camera_file(const std::filesystem::path& file) {
 
 Result<CameraFile> load_camera(const std::string& file_or_inline) {
   std::error_code status;
-  const bool is_inline = std::count(file_or_inline.begin(), file_or_inline.end(), ',') == 3 && !std::filesystem::exists(file_or_inline, status);
+  const bool is_inline = file_or_inline.find(',') != std::string::npos && !std::filesystem::exists(file_or_inline, status);
   return is_inline ? parse_inline_camera(file_or_inline) : load_camera_file(file_or_inline);
 }
 

@@ -10,6 +10,7 @@
 #include "gfp/pipeline/pipeline_options.hpp"
 #include "publish/publish_options.hpp"
 #include "replay/replay_options.hpp"
+#include "synthetic/synthetic_options.hpp"
 
 namespace gfp {
 
@@ -21,6 +22,7 @@ struct SensorConfig {
   std::string camera;               ///< Camera file, or `fx,fy,cx,cy`; empty: what the driver knows by itself.
   SourceOptions source;             ///< Timeouts and reconnection.
   ReplayOptions replay;             ///< Of the driver of that name; its `sensor` and `camera` are the ones above.
+  SyntheticOptions synthetic;       ///< Likewise.
 };
 
 template <class Visitor>
@@ -31,6 +33,7 @@ void visit_fields(SensorConfig& o, Visitor&& field) {
   field("camera", o.camera);
   field.section("source", o.source);
   field.section("replay", o.replay);
+  field.section("synthetic", o.synthetic);
 }
 
 struct LogOptions {

@@ -115,7 +115,7 @@ nlohmann::ordered_json object_json(const SceneObject& object, const std::string&
                {"observed_fraction", observed_fraction(model.states)},
                {"sigma_median_mm", median_sigma_mm(model.sigma_m)},
                {"evidence", evidence_json(model.evidence)}};
-  if (!mesh_file.empty()) json["mesh"] = mesh_file;
+  json["mesh"] = mesh_file.empty() ? Json(nullptr) : Json(mesh_file);
   json["no_grasp_reason"] = object.grasps.no_grasp_reason.empty() ? Json(nullptr) : Json(object.grasps.no_grasp_reason);
   json["grasps"] = std::move(grasps);
   json["ms"] = map_json(object.ms);

@@ -44,7 +44,7 @@ TEST(SceneJson, ValuesAreTheScenes) {
   EXPECT_EQ(object["observed_fraction"], 7.0 / 8.0);
   EXPECT_EQ(object["rms_mm"], 2.0);
   EXPECT_TRUE(object["no_grasp_reason"].is_null());
-  EXPECT_FALSE(object.contains("mesh"));
+  EXPECT_TRUE(object.at("mesh").is_null());
   EXPECT_EQ(json["objects"][1]["no_grasp_reason"], "too_wide");
 }
 

@@ -1,0 +1,206 @@
+"""Subscribes to a running gfpd and decodes what it publishes: scenes, meshes and grasps as numpy arrays.
+
+Needs python3-zmq, python3-protobuf and python3-numpy, and no generated code: the messages are built from `gfp.desc`, the
+FileDescriptorSet that the build makes. It is looked for in $GFP_DESCRIPTORS, beside this file, in the build folders of the
+source tree, and in the installed share/gfp.
+
+    from gfp_client import SceneSubscriber
+    for scene in SceneSubscriber():
+        for thing in scene.objects:
+            print(thing.id, thing.class_name, thing.vertices.shape, thing.triangles.shape, [g.width_m for g in thing.grasps])
+
+Metres and radians; camera frame x right, y down, z forward; T_a_b maps b coordinates into a (4x4).
+"""
+
+import dataclasses
+import os
+import pathlib
+import time
+import typing
+
+import numpy as np
+import zmq
+from google.protobuf import descriptor_pb2, descriptor_pool, message_factory
+
+
+def _descriptor_file() -> pathlib.Path:
+    here = pathlib.Path(__file__).resolve().parent
+    places = [pathlib.Path(os.environ["GFP_DESCRIPTORS"])] if "GFP_DESCRIPTORS" in os.environ else []
+    places += [here / "gfp.desc"]
+    places += [here.parents[1] / "build" / preset / "src/wire/generated/gfp.desc" for preset in ("release", "dev", "bench", "asan", "tsan")]
+    places += [pathlib.Path(prefix) / "share/gfp/gfp.desc" for prefix in ("/usr/local", "/usr")]
+    for place in places:
+        if place.is_file():
+            return place
+    raise FileNotFoundError("gfp.desc is in none of: " + ", ".join(map(str, places)) + " (name it in GFP_DESCRIPTORS)")
+
+
+def _load_messages() -> dict:
+    files = descriptor_pb2.FileDescriptorSet.FromString(_descriptor_file().read_bytes())
+    pool = descriptor_pool.DescriptorPool()
+    for file in files.file:
+        pool.AddSerializedFile(file.SerializeToString())
+    # Protobuf 4.22 and later have the second; before, the first.
+    make = getattr(message_factory, "GetMessageClass", None) or message_factory.MessageFactory(pool).GetPrototype
+    names = [f"{file.package}.{message.name}" for file in files.file for message in file.message_type]
+    return {name: make(pool.FindMessageTypeByName(name)) for name in names}
+
+
+MESSAGES = _load_messages()  # "gfp.v1.Scene" -> class
+
+
+def default_endpoint(name: str) -> str:
+    """Where gfpd and its clients meet without any configuration; `name` is sensor or state."""
+    for variable in ("RUNTIME_DIRECTORY", "XDG_RUNTIME_DIR"):
+        if os.environ.get(variable):
+            return f"ipc://{os.environ[variable]}/gfp/{name}"
+    return f"ipc:///tmp/gfp-{os.getuid()}/gfp/{name}"
+
+
+@dataclasses.dataclass
+class Message:
+    topic: str
+    envelope: typing.Any  # gfp.v1.Envelope
+    payload: typing.Any  # The message that envelope.schema names.
+    blob: memoryview  # Pixels of images; else empty.
+    age_s: float  # From publishing to receiving, by this host's clock.
+
+
+class Subscriber:
+    """Messages of the given topics (or prefixes of topics). Reconnects by itself; counts what was missed."""
+
+    def __init__(self, topics, endpoints=None, high_water_mark=1000):
+        self.received = self.missed = self.restarts = 0
+        self._last = {}  # topic -> (session, seq)
+        self._socket = zmq.Context.instance().socket(zmq.SUB)
+        self._socket.setsockopt(zmq.LINGER, 0)
+        self._socket.setsockopt(zmq.RCVHWM, high_water_mark)
+        for topic in topics:
+            self._socket.setsockopt_string(zmq.SUBSCRIBE, topic)
+        names = {"sensor" if topic.startswith("/gfp/sensor/") else "state" for topic in topics}
+        for endpoint in endpoints or [default_endpoint(name) for name in sorted(names)]:
+            self._socket.connect(endpoint)
+
+    def receive(self, timeout_s=None):
+        """The next message, or None where none comes in time (None: wait for ever)."""
+        if not self._socket.poll(None if timeout_s is None else max(0, round(1000 * timeout_s))):
+            return None
+        parts = self._socket.recv_multipart(copy=False)
+        envelope = MESSAGES["gfp.v1.Envelope"].FromString(parts[1].buffer)
+        payload = MESSAGES[envelope.schema].FromString(parts[2].buffer)
+        topic = parts[0].bytes.decode()
+        self._count(topic, envelope)
+        blob = parts[3].buffer if len(parts) > 3 else memoryview(b"")
+        return Message(topic, envelope, payload, blob, time.time() - 1e-9 * envelope.stamp_publish_ns)
+
+    def _count(self, topic, envelope):
+        self.received += 1
+        session, seq = self._last.get(topic, (envelope.session, envelope.seq - 1))
+        if session != envelope.session:
+            self.restarts += 1
+        elif envelope.seq > seq + 1:
+            self.missed += envelope.seq - seq - 1
+        self._last[topic] = (envelope.session, envelope.seq)
+
+    def close(self):
+        self._socket.close()
+
+
+def transform(message) -> np.ndarray:
+    """4x4 of a gfp.v1.Transform."""
+    return np.array(message.matrix, dtype=np.float64).reshape(4, 4)
+
+
+def depth_m(message: Message) -> np.ndarray:
+    """Metres, height x width, 0 where there is no reading, of a message of /gfp/sensor/<name>/depth/."""
+    image = message.payload
+    return np.frombuffer(message.blob, "<u2").reshape(image.height, image.width) * np.float32(image.scale_m)
+
+
+class Grasp:
+    """One gfp.v1.Grasp; its transforms as 4x4, all else as in the message."""
+
+    def __init__(self, message):
+        self.message = message
+        self.T_camera_tcp = transform(message.T_camera_tcp)
+        self.T_camera_parent = transform(message.T_camera_parent)
+        self.T_camera_pregrasp_tcp = transform(message.T_camera_pregrasp_tcp)
+
+    def __getattr__(self, name):
+        return getattr(self.message, name)
+
+
+class SceneObject:
+    """One gfp.v1.SceneObject. Arrays share the memory of the received message: they are read-only and not copied.
+
+    vertices  N x 3, object frame, metres (float32; of int16 messages a float64 array is computed)
+    triangles M x 3, counter-clockwise seen from outside; None until the topology has arrived (at most a second)
+    observed  N, True where the vertex was seen, else inferred;  sigma_m  N, standard deviation along the normal
+    """
+
+    def __init__(self, message, topology):
+        self.message = message
+        self.T_camera_object = transform(message.T_camera_object)
+        self.grasps = [Grasp(grasp) for grasp in message.grasps]
+        sent = message.vertices
+        if sent.encoding == 0:
+            self.vertices = np.frombuffer(sent.positions, "<f4").reshape(-1, 3)
+            self.sigma_m = np.frombuffer(sent.sigma, "<f4")
+        else:
+            self.vertices = np.array(sent.origin) + sent.scale * np.frombuffer(sent.positions, "<i2").reshape(-1, 3)
+            self.sigma_m = sent.sigma_scale * np.frombuffer(sent.sigma, "<u2")
+        self.observed = np.frombuffer(sent.states, np.uint8) & 1 == 1
+        self.triangles = None if topology is None else np.frombuffer(topology.triangles, "<i4").reshape(-1, 3)
+
+    def __getattr__(self, name):
+        return getattr(self.message, name)
+
+    def vertices_camera(self) -> np.ndarray:
+        return self.vertices @ self.T_camera_object[:3, :3].T + self.T_camera_object[:3, 3]
+
+
+class Scene:
+    """One gfp.v1.Scene with its objects' meshes."""
+
+    def __init__(self, message: Message, topologies):
+        self.message = message.payload
+        self.envelope = message.envelope
+        self.age_s = message.age_s
+        self.objects = [SceneObject(one, topologies.get(one.vertices.topology_hash)) for one in message.payload.objects]
+        self.T_camera_support = transform(message.payload.support.T_camera_support) if message.payload.HasField("support") else None
+
+    def __getattr__(self, name):
+        return getattr(self.message, name)
+
+
+class SceneSubscriber:
+    """Scenes with their meshes put together. Iterate for ever, or call next(timeout_s)."""
+
+    def __init__(self, endpoints=None):
+        self.subscriber = Subscriber(["/gfp/mesh/", "/gfp/scene/"], endpoints)
+        self._topologies = {}
+
+    def next(self, timeout_s=None):
+        """The next scene, or None where none comes in time."""
+        deadline = None if timeout_s is None else time.monotonic() + timeout_s
+        while True:
+            message = self.subscriber.receive(None if deadline is None else deadline - time.monotonic())
+            if message is None:
+                return None
+            if message.envelope.schema == "gfp.v1.Topology":
+                self._topologies.setdefault(message.payload.hash, message.payload)
+            else:
+                return Scene(message, self._topologies)
+
+    def __iter__(self):
+        while True:
+            yield self.next()
+
+
+if __name__ == "__main__":
+    for scene in SceneSubscriber():
+        print(f"{scene.header.sensor} frame {scene.header.sequence}, {1e3 * scene.age_s:.1f} ms old")
+        for thing in scene.objects:
+            mesh = "mesh to come" if thing.triangles is None else f"{len(thing.vertices)} vertices, {len(thing.triangles)} triangles"
+            best = f"grasp {1e3 * thing.grasps[0].width_m:.0f} mm wide" if thing.grasps else thing.no_grasp_reason
+            print(f"  {thing.id:4} {thing.class_name:14} at {thing.T_camera_object[:3, 3].round(3)}  {mesh}, {best}")

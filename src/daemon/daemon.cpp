@@ -1,0 +1,143 @@
+#include "daemon/daemon.hpp"
+
+#include <spdlog/spdlog.h>
+#include <tbb/task_arena.h>
+
+#include <set>
+
+#include "gfp/core/time.hpp"
+
+namespace gfp {
+namespace {
+
+/// Two sensors are configured alike when every field is: the field lists say so.
+bool same(const SensorConfig& a, const SensorConfig& b) {
+  DaemonOptions left, right;
+  left.sensors = {a};
+  right.sensors = {b};
+  return config::to_yaml(left) == config::to_yaml(right);
+}
+
+}  // namespace
+
+Result<std::unique_ptr<Daemon>> Daemon::start(DaemonOptions options, DaemonParts parts, std::uint64_t session) {
+  if (options.sensors.empty()) return failure(ErrorCode::kInvalidArgument, "sensors: none is configured, expected at least one");
+  auto publisher = Publisher::start(options.publish, session);
+  if (!publisher) return tl::unexpected(publisher.error());
+  std::unique_ptr<Daemon> daemon(new Daemon(options, std::move(parts), std::move(*publisher)));
+  auto sources = daemon->make_sources(options);
+  if (!sources) return tl::unexpected(sources.error());
+  daemon->start_sensors(options, std::move(*sources));
+  return daemon;
+}
+
+Daemon::Daemon(DaemonOptions options, DaemonParts parts, std::unique_ptr<Publisher> publisher)
+    : options_(std::move(options)),
+      parts_(std::move(parts)),
+      publisher_(std::move(publisher)),
+      inbox_(options_.lossless ? HandOver::kLossless : HandOver::kLatestWins),
+      pipeline_options_(std::make_shared<const PipelineOptions>(options_.pipeline)),
+      pipeline_([this](const std::stop_token& stop) { run_pipeline(stop); }) {}
+
+Daemon::~Daemon() { stop(); }
+
+Result<void> Daemon::reload(DaemonOptions options) {
+  if (options.sensors.empty()) return failure(ErrorCode::kInvalidArgument, "sensors: none is configured, expected at least one");
+  auto sources = make_sources(options);
+  if (!sources) return tl::unexpected(sources.error());
+  {
+    MutexLock lock(mutex_);
+    pipeline_options_ = std::make_shared<const PipelineOptions>(options.pipeline);
+  }
+  start_sensors(options, std::move(*sources));
+  options_ = std::move(options);
+  return {};
+}
+
+bool Daemon::is_at_work(const SensorConfig& sensor) const {
+  MutexLock lock(mutex_);
+  const auto found = sensors_.find(sensor.name);
+  return found != sensors_.end() && same(found->second->config(), sensor);
+}
+
+Result<Daemon::Sources> Daemon::make_sources(const DaemonOptions& options) const {
+  Sources sources;
+  for (const SensorConfig& sensor : options.sensors) {
+    if (is_at_work(sensor)) continue;
+    auto source = parts_.make_source(sensor);
+    if (!source) return tl::unexpected(source.error());
+    sources[sensor.name] = std::move(*source);
+  }
+  return sources;
+}
+
+void Daemon::start_sensors(const DaemonOptions& options, Sources sources) {
+  Sensors retired;  // destroyed without the lock: joining takes as long as a grab
+  {
+    MutexLock lock(mutex_);
+    std::set<std::string> kept;
+    for (const SensorConfig& sensor : options.sensors)
+      if (!sources.contains(sensor.name)) kept.insert(sensor.name);
+    for (auto entry = sensors_.begin(); entry != sensors_.end();) {
+      const bool stays = kept.contains(entry->first);
+      if (!stays) retired.insert(*entry);
+      entry = stays ? std::next(entry) : sensors_.erase(entry);
+    }
+  }
+  for (auto& [name, worker] : retired) worker->request_stop();
+  retired.clear();
+  const HandOver policy = options.lossless ? HandOver::kLossless : HandOver::kLatestWins;
+  for (const SensorConfig& sensor : options.sensors) {
+    const auto source = sources.find(sensor.name);
+    if (source == sources.end()) continue;
+    auto worker = std::make_shared<SensorWorker>(sensor, std::move(source->second), policy, inbox_, *publisher_);
+    MutexLock lock(mutex_);
+    sensors_[sensor.name] = std::move(worker);
+  }
+}
+
+void Daemon::run_pipeline(const std::stop_token& stop) {
+  tbb::task_arena arena(options_.threads > 0 ? options_.threads : tbb::task_arena::automatic);
+  SceneMemory memory;
+  while (const std::optional<FramePtr> frame = inbox_.take(stop)) {
+    std::shared_ptr<const PipelineOptions> options;
+    {
+      MutexLock lock(mutex_);
+      options = pipeline_options_;
+    }
+    try {
+      PipelineResult result = arena.execute([&] { return parts_.process(**frame, memory, *options); });
+      memory = std::move(result.memory);
+      publisher_->put(std::make_shared<const Scene>(std::move(result.scene)));
+    } catch (const std::exception& error) {  // memory exhausted, or a bug: it costs this frame
+      spdlog::error("sensor {} frame {}: {}", (*frame)->sensor, (*frame)->sequence, error.what());
+      continue;
+    }
+    MutexLock lock(mutex_);
+    if (const auto sensor = sensors_.find((*frame)->sensor); sensor != sensors_.end())
+      sensor->second->statistics().scene_done(monotonic_now() - (*frame)->stamps.monotonic);
+  }
+}
+
+void Daemon::tick() {
+  MutexLock lock(mutex_);
+  for (const auto& [name, sensor] : sensors_) {
+    sensor->statistics().turn(monotonic_now());
+    publisher_->put(sensor->status());
+  }
+}
+
+void Daemon::stop() {
+  Sensors sensors;
+  {
+    MutexLock lock(mutex_);
+    sensors.swap(sensors_);
+  }
+  for (const auto& [name, sensor] : sensors) sensor->request_stop();
+  pipeline_.request_stop();
+  sensors.clear();
+  if (pipeline_.joinable()) pipeline_.join();
+  publisher_->stop();
+}
+
+}  // namespace gfp

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <thread>
+
+#include "config/daemon_options.hpp"
+#include "daemon/frame_inbox.hpp"
+#include "daemon/sensor_worker.hpp"
+#include "gfp/pipeline/process_frame.hpp"
+#include "publish/publisher.hpp"
+
+namespace gfp {
+
+/// What the daemon is given, so that tests can give it something else.
+struct DaemonParts {
+  std::function<Result<std::unique_ptr<FrameSource>>(const SensorConfig&)> make_source;
+  std::function<PipelineResult(const Frame&, const SceneMemory&, const PipelineOptions&)> process;
+};
+
+/// gfpd without its command line: sensors, one pipeline, one publisher.
+///
+///     SensorWorker (2 threads each) --FrameInbox--> pipeline thread (oneTBB arena) --> Publisher (1 thread)
+///
+/// start(), reload(), tick() and stop() belong to one thread, the one that waits for signals.
+class Daemon {
+ public:
+  /// Errors: as Publisher::start() and make_source; kInvalidArgument where no sensor is configured.
+  static Result<std::unique_ptr<Daemon>> start(DaemonOptions options, DaemonParts parts, std::uint64_t session);
+  ~Daemon();  ///< As stop().
+
+  /// Takes over a new configuration: sensors that are configured as before go on without losing a frame, others are stopped,
+  /// started or started anew; the pipeline's options hold from the next frame on. Endpoints and thread count stay until the
+  /// next start. On an error nothing has changed. Errors: as start().
+  Result<void> reload(DaemonOptions options);
+
+  void tick();  ///< Once a second: statistics and statuses.
+  void stop();  ///< Drains: the frame at work becomes a scene, the last state is sent. Idempotent.
+
+  Publisher& publisher() { return *publisher_; }
+
+ private:
+  Daemon(DaemonOptions options, DaemonParts parts, std::unique_ptr<Publisher> publisher);
+
+  using Sensors = std::map<std::string, std::shared_ptr<SensorWorker>>;
+  using Sources = std::map<std::string, std::unique_ptr<FrameSource>>;
+
+  /// Sources of the sensors in `options` that are not at work as configured. Errors: of make_source; then nothing was made.
+  Result<Sources> make_sources(const DaemonOptions& options) const;
+  void start_sensors(const DaemonOptions& options, Sources sources);
+  bool is_at_work(const SensorConfig& sensor) const;
+  void run_pipeline(const std::stop_token& stop);
+
+  DaemonOptions options_;
+  const DaemonParts parts_;
+  std::unique_ptr<Publisher> publisher_;
+  FrameInbox inbox_;
+  mutable Mutex mutex_;
+  std::shared_ptr<const PipelineOptions> pipeline_options_ GFP_GUARDED_BY(mutex_);
+  Sensors sensors_ GFP_GUARDED_BY(mutex_);
+  std::jthread pipeline_;  ///< Last: it uses all of the above.
+};
+
+}  // namespace gfp

@@ -1,0 +1,120 @@
+// gfpd: from cameras to graspable objects, for whoever subscribes. SIGTERM and SIGINT drain and end, SIGHUP reloads.
+#include <csignal>
+
+#include <CLI/CLI.hpp>
+#include <iostream>
+#include <random>
+
+#include "app/builtin_library.hpp"
+#include "app/make_source.hpp"
+#include "cli/exit_code.hpp"
+#include "daemon/daemon.hpp"
+#include "daemon/logging.hpp"
+#include "gfp/core/version.hpp"
+#include <spdlog/spdlog.h>
+
+namespace {
+
+struct Arguments {
+  std::string config;
+  std::vector<std::string> settings;
+  bool insecure = false;
+};
+
+gfp::Result<gfp::DaemonOptions> load(const Arguments& arguments) {
+  std::vector<std::string> settings = arguments.settings;
+  if (arguments.insecure) settings.insert(settings.begin(), "publish.insecure=true");
+  auto options = gfp::config::load_daemon_options(arguments.config, settings);
+  if (!options) return options;
+  if (gfp::Result<void> valid = gfp::validate(options->pipeline); !valid) return tl::unexpected(valid.error());
+  return options;
+}
+
+std::uint64_t new_session() {
+  std::random_device device;
+  return (static_cast<std::uint64_t>(device()) << 32) | device();
+}
+
+gfp::DaemonParts parts() {
+  return {gfp::make_source, [](const gfp::Frame& frame, const gfp::SceneMemory& memory, const gfp::PipelineOptions& options) {
+            return gfp::process_frame(frame, memory, gfp::builtin_library(), options);
+          }};
+}
+
+void reload(gfp::Daemon& daemon, const Arguments& arguments) {
+  const auto options = load(arguments);
+  if (!options) return spdlog::error("reload: the old configuration stays: {}", options.error().what);
+  if (const auto done = daemon.reload(*options); !done) return spdlog::error("reload: the old configuration stays: {}", done.error().what);
+  spdlog::info("reloaded {}", arguments.config);
+}
+
+/// Until SIGTERM or SIGINT.
+void serve(gfp::Daemon& daemon, const Arguments& arguments, const sigset_t& signals) {
+  gfp::Nanoseconds next_tick = gfp::monotonic_now();
+  while (true) {
+    const gfp::Nanoseconds now = gfp::monotonic_now();
+    if (now >= next_tick) {
+      daemon.tick();
+      next_tick = now + std::chrono::seconds(1);
+    }
+    const auto left = std::max(gfp::Nanoseconds(1'000'000), next_tick - gfp::monotonic_now());
+    const timespec wait{static_cast<time_t>(left.count() / 1'000'000'000), static_cast<long>(left.count() % 1'000'000'000)};
+    const int signal = sigtimedwait(&signals, nullptr, &wait);
+    if (signal == SIGHUP) reload(daemon, arguments);
+    if (signal == SIGTERM || signal == SIGINT) return spdlog::info("stopping on signal {}", signal);
+  }
+}
+
+int run(const Arguments& arguments) {
+  const auto options = load(arguments);
+  if (!options) {
+    std::cerr << "gfpd: " << options.error().what << "\n";
+    return options.error().code == gfp::ErrorCode::kNotFound ? gfp::kExitNoInput : gfp::kExitConfig;
+  }
+  if (const auto logging = gfp::start_logging(options->log); !logging) {
+    std::cerr << "gfpd: " << logging.error().what << "\n";
+    return gfp::kExitCannotCreate;
+  }
+  // Blocked before the first thread starts, so that every thread inherits it and only serve() gets signals.
+  sigset_t signals;
+  sigemptyset(&signals);
+  for (const int signal : {SIGTERM, SIGINT, SIGHUP}) sigaddset(&signals, signal);
+  pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+
+  gfp::builtin_library();  // made before the first frame, not during it
+  auto daemon = gfp::Daemon::start(*options, parts(), new_session());
+  if (!daemon) {
+    spdlog::error("{}", daemon.error().what);
+    return daemon.error().code == gfp::ErrorCode::kInvalidArgument ? gfp::kExitConfig : gfp::kExitUnavailable;
+  }
+  gfp::publish_log_to(&(*daemon)->publisher());
+  spdlog::info("gfpd {} serves {} sensor(s)", gfp::version(), options->sensors.size());
+  serve(**daemon, arguments, signals);
+  gfp::publish_log_to(nullptr);
+  (*daemon)->stop();
+  spdlog::info("stopped");
+  return gfp::kExitOk;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Arguments arguments;
+  CLI::App app{"Turns depth cameras into closed, graspable object models and publishes them", "gfpd"};
+  app.set_version_flag("--version", "gfpd " + std::string(gfp::version()));
+  app.add_option("--config", arguments.config, "Configuration file (YAML); see config/default.yaml for every option");
+  app.add_option("--set", arguments.settings, "Overrides one option: path.to.key=value; may be repeated")->take_all();
+  app.add_flag("--insecure", arguments.insecure, "Allows tcp endpoints, which are neither encrypted nor authenticated");
+  app.footer("SIGTERM and SIGINT end it after the last state was sent; SIGHUP reloads the configuration.");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? gfp::kExitOk : gfp::kExitUsage;
+  }
+  try {
+    return run(arguments);
+  } catch (const std::exception& error) {
+    std::cerr << "gfpd: " << error.what() << " (a bug: please report it)\n";
+    return gfp::kExitSoftware;
+  }
+}

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <thread>
+
+#include "config/daemon_options.hpp"
+#include "daemon/frame_inbox.hpp"
+#include "daemon/sensor_statistics.hpp"
+#include "gfp/frame/run_source.hpp"
+#include "publish/publisher.hpp"
+
+namespace gfp {
+
+/// One sensor at work: a thread that runs its driver, and one that hands its frames on.
+///
+///     source --driver thread--> LatestSlot --relay thread--> publisher (sensor topics), inbox (pipeline)
+class SensorWorker {
+ public:
+  /// Starts at once. `publisher` and `inbox` must live longer.
+  SensorWorker(SensorConfig config, std::unique_ptr<FrameSource> source, HandOver policy, FrameInbox& inbox, Publisher& publisher);
+  ~SensorWorker();
+
+  const SensorConfig& config() const { return config_; }
+  SensorStatistics& statistics() { return statistics_; }
+
+  void request_stop();  ///< Does not wait; the destructor does.
+  v1::SensorStatus status() const;  ///< Safe from any thread.
+
+ private:
+  void drive(const std::stop_token& stop);
+  void relay(const std::stop_token& stop);
+  void changed(const SourceStatus& status);
+
+  const SensorConfig config_;
+  const std::unique_ptr<FrameSource> source_;
+  const SourceInfo info_;
+  FrameInbox& inbox_;
+  Publisher& publisher_;
+  SensorStatistics statistics_;
+  LatestSlot<FramePtr> slot_;
+  mutable Mutex mutex_;
+  SourceStatus source_status_ GFP_GUARDED_BY(mutex_);
+  std::jthread relay_, driver_;  ///< Last: they use all of the above.
+};
+
+}  // namespace gfp

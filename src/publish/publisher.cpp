@@ -1,0 +1,204 @@
+#include "publish/publisher.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include "gfp/core/version.hpp"
+#include "wire/scene_messages.hpp"
+#include "wire/sensor_messages.hpp"
+#include "wire/topics.hpp"
+
+namespace gfp {
+
+Result<std::unique_ptr<Publisher>> Publisher::start(const PublishOptions& options, std::uint64_t session) {
+  const auto endpoints = [](const std::vector<std::string>& given, const char* name) {
+    return given.empty() ? std::vector<std::string>{wire::default_endpoint(name)} : given;
+  };
+  auto context = std::make_unique<zmq::context_t>(1);
+  auto sensor = bind_publisher(*context, endpoints(options.sensor_endpoints, "sensor"), options.sensor_high_water_mark);
+  if (!sensor) return tl::unexpected(sensor.error());
+  auto state = bind_publisher(*context, endpoints(options.state_endpoints, "state"), options.state_high_water_mark);
+  if (!state) return tl::unexpected(state.error());
+  return std::unique_ptr<Publisher>(new Publisher(options, session, std::move(context), std::move(*sensor), std::move(*state)));
+}
+
+Publisher::Publisher(const PublishOptions& options, std::uint64_t session, std::unique_ptr<zmq::context_t> context, PublisherSocket sensor,
+                     PublisherSocket state)
+    : options_(options),
+      coding_(options.vertices == "int16" ? wire::VertexCoding::kInt16 : wire::VertexCoding::kFloat32),
+      started_(monotonic_now()),
+      context_(std::move(context)),
+      sensor_(std::move(sensor), session),
+      state_(std::move(state), session),
+      thread_([this](const std::stop_token& stop) { run(stop); }) {}
+
+Publisher::~Publisher() { stop(); }
+
+void Publisher::stop() {
+  if (!thread_.joinable()) return;
+  thread_.request_stop();
+  inbox_.wake();
+  thread_.join();
+}
+
+void Publisher::run(const std::stop_token& stop) {
+  const auto period = std::chrono::duration_cast<Nanoseconds>(std::chrono::duration<double>(options_.heartbeat_s));
+  Nanoseconds next_heartbeat = monotonic_now() + period;
+  std::array<zmq::pollitem_t, 3> items = {{{sensor_.socket().handle(), 0, ZMQ_POLLIN, 0},
+                                           {state_.socket().handle(), 0, ZMQ_POLLIN, 0},
+                                           {nullptr, inbox_.wake_file(), ZMQ_POLLIN, 0}}};
+  while (!stop.stop_requested()) {
+    const Nanoseconds next = serve_at_ ? std::min(*serve_at_, next_heartbeat) : next_heartbeat;
+    const auto wait = std::max(Nanoseconds(0), next - monotonic_now());
+    zmq::poll(items, std::chrono::duration_cast<std::chrono::milliseconds>(wait) + std::chrono::milliseconds(1));
+    sensor_.read_subscriptions([](const std::string&) {});
+    state_.read_subscriptions([this](const std::string& prefix) { joined(prefix); });
+    send_content();
+    if (serve_at_ && monotonic_now() >= *serve_at_) serve_late_joiners();
+    if (monotonic_now() < next_heartbeat) continue;
+    heartbeat();
+    next_heartbeat = monotonic_now() + period;
+  }
+  send_content();
+  send_daemon_status("stopping");
+}
+
+void Publisher::send_content() {
+  Inbox::Content content = inbox_.take();
+  for (const auto& [name, frame] : content.frames) send_frame(frame);
+  for (const auto& [name, scene] : content.scenes) take_scene(scene, content.lost[name]);
+  for (auto& [name, status] : content.statuses) {
+    const std::string topic = wire::status_topic(name);
+    if (state_.demand().wants(topic)) state_.send(topic, status, {});
+    statuses_[name] = std::move(status);
+  }
+  if (!state_.demand().wants(wire::kLogTopic)) return;
+  for (const v1::LogRecord& record : content.log) state_.send(std::string(wire::kLogTopic), record, {});
+}
+
+void Publisher::send_frame(const Latest<FramePtr>& latest) {
+  const Frame& frame = *latest.value;
+  dropped_ += latest.dropped;
+  const auto wanted = [&](const std::string& topic) { return sensor_.demand().wants(topic); };
+  if (const std::string topic = wire::sensor_topic(frame.sensor, "depth"); wanted(topic)) {
+    v1::DepthImage message;
+    wire::fill_depth(frame, message);
+    sensor_.send(topic, message, frame.stamps, latest.dropped, {wire::depth_blob(frame), latest.value});
+  }
+  if (const std::string topic = wire::sensor_topic(frame.sensor, "color"); !frame.color.empty() && wanted(topic)) {
+    v1::ColorImage message;
+    wire::fill_color(frame, message);
+    sensor_.send(topic, message, frame.stamps, latest.dropped, {wire::color_blob(frame), latest.value});
+  }
+  if (const std::string topic = wire::sensor_topic(frame.sensor, "camera"); wanted(topic)) {
+    v1::CameraInfo message;
+    wire::fill_camera(frame, message);
+    sensor_.send(topic, message, frame.stamps, latest.dropped);
+  }
+}
+
+void Publisher::take_scene(const Latest<ScenePtr>& latest, const std::set<std::uint64_t>& lost) {
+  const Scene& scene = *latest.value;
+  LastScene& last = last_scenes_[scene.sensor];
+  const bool is_history = last.scene && last.scene->sequence > scene.sequence && last.scene->stamps.monotonic >= scene.stamps.monotonic;
+  if (is_history) return;  // finished out of order
+  last = {latest.value, monotonic_now()};
+  ++scenes_;
+  dropped_ += latest.dropped;
+  for (const SceneObject& object : scene.objects) send_topology(object.model);
+  send_scene(scene, latest.dropped, lost);
+}
+
+void Publisher::send_scene(const Scene& scene, std::uint64_t dropped, const std::set<std::uint64_t>& lost) {
+  if (state_.demand().wants(wire::kSceneTopic)) {
+    v1::Scene message;
+    wire::fill(scene, coding_, message);
+    state_.send(std::string(wire::kSceneTopic), message, scene.stamps, dropped);
+  }
+  if (!state_.demand().wants_below(wire::kObjectsPrefix)) return;
+  const auto send_object = [&](std::uint64_t id, const auto& fill) {
+    const std::string topic = wire::object_topic(id);
+    if (!state_.demand().wants(topic)) return;
+    v1::ObjectUpdate message;
+    fill(message);
+    state_.send(topic, message, scene.stamps);
+  };
+  for (const SceneObject& object : scene.objects)
+    send_object(object.id, [&](v1::ObjectUpdate& message) { wire::fill(scene, object, coding_, message); });
+  for (const std::uint64_t id : lost) send_object(id, [&](v1::ObjectUpdate& message) { wire::fill_lost(scene, id, message); });
+}
+
+void Publisher::repeat_scenes(Nanoseconds not_since) {
+  for (auto& [name, last] : last_scenes_) {
+    if (last.sent > not_since) continue;
+    send_scene(*last.scene, 0, {});
+    last.sent = monotonic_now();
+  }
+}
+
+void Publisher::send_topology(const FittedModel& model) {
+  if (!model.topology) return;
+  const auto [entry, is_new] = topologies_.try_emplace(model.topology->hash);
+  KnownTopology& known = entry->second;
+  known.last_used = scenes_;
+  if (!is_new) return;
+  known.topology = model.topology;
+  known.vertices = model.vertices.size();
+  send_topologies(wire::mesh_topic(model.topology->hash));
+  if (topologies_.size() <= kMaxTopologies) return;
+  topologies_.erase(std::min_element(topologies_.begin(), topologies_.end(),
+                                     [](const auto& a, const auto& b) { return a.second.last_used < b.second.last_used; }));
+}
+
+void Publisher::send_topologies(std::string_view below) {
+  if (!state_.demand().wants_below(wire::kMeshPrefix)) return;
+  for (const auto& [hash, known] : topologies_) {
+    const std::string topic = wire::mesh_topic(hash);
+    if (!topic.starts_with(below) || !state_.demand().wants(topic)) continue;
+    v1::Topology message;
+    wire::fill(*known.topology, known.vertices, message);
+    state_.send(topic, message, {});
+  }
+}
+
+void Publisher::send_daemon_status(const char* state) {
+  const std::string topic = wire::status_topic("gfpd");
+  if (!state_.demand().wants(topic)) return;
+  v1::DaemonStatus status;
+  status.set_version(std::string(version()));
+  status.set_state(state);
+  status.set_uptime_s(std::chrono::duration<double>(monotonic_now() - started_).count());
+  status.set_scenes(scenes_);
+  std::size_t objects = 0;
+  for (const auto& [name, last] : last_scenes_) objects += last.scene->objects.size();
+  status.set_objects(static_cast<std::uint32_t>(objects));
+  status.set_messages(sensor_.messages() + state_.messages());
+  status.set_bytes(sensor_.bytes() + state_.bytes());
+  status.set_dropped(dropped_);
+  status.set_subscriptions(static_cast<std::uint32_t>(sensor_.demand().size() + state_.demand().size()));
+  state_.send(topic, status, {});
+}
+
+void Publisher::heartbeat() {
+  send_daemon_status("running");
+  send_topologies(wire::kMeshPrefix);
+  for (const auto& [name, status] : statuses_)
+    if (const std::string topic = wire::status_topic(name); state_.demand().wants(topic)) state_.send(topic, status, {});
+  repeat_scenes(monotonic_now() - std::chrono::duration_cast<Nanoseconds>(std::chrono::duration<double>(options_.heartbeat_s)));
+}
+
+void Publisher::joined(const std::string& prefix) {
+  const auto concerns = [&](std::string_view topics) { return prefix.starts_with(topics) || topics.starts_with(prefix); };
+  if (!concerns(wire::kMeshPrefix) && !concerns(wire::kSceneTopic) && !concerns(wire::kObjectsPrefix)) return;
+  joined_ = monotonic_now();
+  if (!serve_at_) serve_at_ = std::max(joined_, served_ + kMinRepeat);
+}
+
+void Publisher::serve_late_joiners() {
+  send_topologies(wire::kMeshPrefix);
+  repeat_scenes(joined_);  // a scene that was sent since then has reached them
+  served_ = monotonic_now();
+  serve_at_.reset();
+}
+
+}  // namespace gfp

@@ -1,0 +1,203 @@
+#include "publish/publisher.hpp"
+
+#include <gtest/gtest.h>
+
+#include "gfp/client/scene_subscriber.hpp"
+#include "gfp/v1/status.pb.h"
+#include "support/hand_made_scene.hpp"
+#include "support/temporary_folder.hpp"
+#include "wire/scene_json.hpp"
+
+namespace gfp {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr auto kLong = 20s;  // a deadline, not a wait: tests end with the message they expect
+
+/// A publisher with endpoints of its own, and what subscribes to it.
+struct Stage {
+  test::TemporaryFolder folder;
+  PublishOptions options;
+  SubscriberOptions subscriber;
+  std::unique_ptr<Publisher> publisher;
+
+  explicit Stage(double heartbeat_s = 0.05) {
+    options.sensor_endpoints = {"ipc://" + (folder / "sensor").string()};
+    options.state_endpoints = {"ipc://" + (folder / "state").string()};
+    options.heartbeat_s = heartbeat_s;
+    subscriber.endpoints = {options.sensor_endpoints[0], options.state_endpoints[0]};
+    start(1);
+  }
+  void start(std::uint64_t session) {
+    publisher.reset();
+    auto started = Publisher::start(options, session);
+    ASSERT_TRUE(started.has_value()) << started.error().what;
+    publisher = std::move(*started);
+  }
+};
+
+ScenePtr shared(Scene scene) { return std::make_shared<const Scene>(std::move(scene)); }
+
+/// The next message that `wanted` accepts.
+template <class Wanted>
+Result<Message> wait_for(Subscriber& subscriber, Wanted&& wanted) {
+  const auto deadline = std::chrono::steady_clock::now() + kLong;
+  while (std::chrono::steady_clock::now() < deadline) {
+    auto message = subscriber.receive(100ms);
+    if (message && wanted(*message)) return message;
+  }
+  return failure(ErrorCode::kTimeout, "no such message");
+}
+
+// The end-to-end claim: what was put in comes out, mesh and grasps, for a subscriber that came late.
+TEST(Publisher, ALateSubscriberGetsTheSceneWithItsMeshes) {
+  Stage stage;
+  const Scene scene = test::hand_made_scene(3);
+  stage.publisher->put(shared(scene));
+  auto subscriber = SceneSubscriber::connect(stage.subscriber);
+  ASSERT_TRUE(subscriber.has_value()) << subscriber.error().what;
+  Result<Scene> received = failure(ErrorCode::kTimeout, "");
+  const auto deadline = std::chrono::steady_clock::now() + kLong;
+  while (std::chrono::steady_clock::now() < deadline && !(received && has_all_meshes(*received))) received = subscriber->next(100ms);
+  ASSERT_TRUE(received.has_value());
+  EXPECT_EQ(scene_json(*received).dump(), scene_json(scene).dump());
+}
+
+TEST(Publisher, ObjectsHaveTopicsOfTheirOwnAndSayWhenTheyAreLost) {
+  Stage stage(30);  // no repetition within the test
+  auto subscriber = Subscriber::connect({"/gfp/objects/2/", "/gfp/objects/77/"}, stage.subscriber);
+  ASSERT_TRUE(subscriber.has_value());
+  const Scene scene = test::hand_made_scene(3);  // 77 and 99 are lost in it
+  stage.publisher->put(shared(scene));
+  const auto update = wait_for(*subscriber, [](const Message& m) { return m.topic == "/gfp/objects/2/"; });
+  ASSERT_TRUE(update.has_value());
+  EXPECT_EQ(update->schema, "gfp.v1.ObjectUpdate");
+  EXPECT_EQ(update->stamps.sensor, scene.stamps.sensor);
+  std::uint64_t sequence = scene.sequence;
+  const auto lost = wait_for(*subscriber, [&](const Message& m) {
+    if (m.topic == "/gfp/objects/77/") return true;
+    Scene next = test::hand_made_scene(3);  // the subscription to 77 may have come after the first
+    next.sequence = ++sequence;
+    stage.publisher->put(shared(next));
+    return false;
+  });
+  ASSERT_TRUE(lost.has_value());
+}
+
+TEST(Publisher, DepthTravelsWithItsPixels) {
+  Stage stage;
+  auto subscriber = Subscriber::connect({"/gfp/sensor/front/depth/"}, stage.subscriber);
+  ASSERT_TRUE(subscriber.has_value());
+  auto frame = std::make_shared<Frame>();
+  frame->sensor = "front";
+  frame->depth.pixels = Image<std::uint16_t>(640, 480, 1234);
+  frame->depth.pixels.at(639, 479) = 4321;
+  Result<Message> message = failure(ErrorCode::kTimeout, "");
+  const auto deadline = std::chrono::steady_clock::now() + kLong;
+  while (!message && std::chrono::steady_clock::now() < deadline) {  // frames are not repeated: until the subscription is known
+    stage.publisher->put(FramePtr(frame));
+    message = subscriber->receive(20ms);
+  }
+  ASSERT_TRUE(message.has_value());
+  const auto depth = depth_image(*message);
+  ASSERT_TRUE(depth.has_value()) << depth.error().what;
+  EXPECT_EQ(depth->pixels.pixels, frame->depth.pixels.pixels);
+}
+
+// seq has no gap on the sender's side, whatever it dropped before the socket; what it dropped it says.
+TEST(Publisher, SequencesHaveNoGapsAndCarryTheSession) {
+  Stage stage;
+  auto subscriber = Subscriber::connect({"/gfp/scene/"}, stage.subscriber);
+  ASSERT_TRUE(subscriber.has_value());
+  std::uint64_t received = 0, last_seq = 0;
+  for (std::uint64_t i = 0; received < 20 && i < 100'000; ++i) {
+    Scene scene = test::hand_made_scene(1);
+    scene.sequence = i;
+    scene.stamps.monotonic = Nanoseconds(static_cast<std::int64_t>(i));
+    stage.publisher->put(shared(std::move(scene)));
+    const auto message = subscriber->receive(1ms);
+    if (!message) continue;
+    EXPECT_EQ(message->session, 1U);
+    if (received > 0) {
+      EXPECT_EQ(message->seq, last_seq + 1);
+    }
+    last_seq = message->seq;
+    ++received;
+  }
+  EXPECT_EQ(received, 20U);
+  EXPECT_EQ(subscriber->counts().missed, 0U);
+}
+
+TEST(Publisher, ASceneOlderThanTheLastIsHistory) {
+  Stage stage(0.02);
+  Scene newer = test::hand_made_scene(1), older = test::hand_made_scene(1);
+  newer.sequence = 10, older.sequence = 9;
+  stage.publisher->put(shared(newer));
+  auto subscriber = SceneSubscriber::connect(stage.subscriber);
+  ASSERT_TRUE(subscriber->next(kLong).has_value());  // the newer one was taken
+  stage.publisher->put(shared(older));
+  for (int i = 0; i < 5; ++i) {
+    const auto scene = subscriber->next(kLong);
+    ASSERT_TRUE(scene.has_value());
+    EXPECT_EQ(scene->sequence, 10U);
+  }
+}
+
+TEST(Publisher, ARestartIsSeenAsANewSession) {
+  Stage stage;
+  auto subscriber = Subscriber::connect({"/gfp/status/gfpd/"}, stage.subscriber);
+  ASSERT_TRUE(wait_for(*subscriber, [](const Message& m) { return m.session == 1; }).has_value());
+  stage.start(2);
+  ASSERT_TRUE(wait_for(*subscriber, [](const Message& m) { return m.session == 2; }).has_value());
+  EXPECT_EQ(subscriber->counts().restarts, 1U);
+}
+
+TEST(Publisher, StoppingSendsTheLastStateFirst) {
+  Stage stage(30);
+  auto subscriber = Subscriber::connect({"/gfp/"}, stage.subscriber);
+  std::uint64_t sequence = 0;
+  const auto put_next = [&] {
+    Scene scene = test::hand_made_scene(1);
+    scene.sequence = ++sequence;
+    stage.publisher->put(shared(std::move(scene)));
+  };
+  put_next();
+  ASSERT_TRUE(wait_for(*subscriber, [&](const Message&) { return true; }).has_value());
+  put_next();
+  stage.publisher->stop();
+  bool last_scene = false;
+  const auto goodbye = wait_for(*subscriber, [&](const Message& m) {
+    last_scene = last_scene || m.topic == "/gfp/scene/";
+    v1::DaemonStatus status;
+    return m.topic == "/gfp/status/gfpd/" && status.ParseFromString(m.payload) && status.state() == "stopping";
+  });
+  EXPECT_TRUE(goodbye.has_value());
+  EXPECT_TRUE(last_scene);
+}
+
+TEST(Publisher, TwoDaemonsCannotServeOneEndpoint) {
+  Stage stage;
+  const auto second = Publisher::start(stage.options, 2);
+  ASSERT_FALSE(second.has_value());
+  EXPECT_NE(second.error().what.find("another gfpd serves this endpoint"), std::string::npos);
+}
+
+TEST(Publisher, AnEndpointThatCannotBeBoundIsNamed) {
+  PublishOptions options;
+  options.sensor_endpoints = {"ipc:///proc/no/such/place"};
+  const auto publisher = Publisher::start(options, 1);
+  ASSERT_FALSE(publisher.has_value());
+  EXPECT_EQ(publisher.error().code, ErrorCode::kIo);
+  EXPECT_NE(publisher.error().what.find("/proc/no/such/place"), std::string::npos);
+}
+
+TEST(Subscriber, SaysNothingCameInsteadOfWaitingForEver) {
+  Stage stage;
+  auto subscriber = Subscriber::connect({"/gfp/scene/"}, stage.subscriber);
+  EXPECT_EQ(subscriber->receive(1ms).error().code, ErrorCode::kTimeout);
+  EXPECT_EQ(Subscriber::connect({"scene"}).error().code, ErrorCode::kInvalidArgument);
+}
+
+}  // namespace
+}  // namespace gfp
