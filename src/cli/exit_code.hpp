@@ -22,6 +22,12 @@ enum ExitCode : int {
 
 ExitCode exit_code_of(const Error& error);
 
+/// An argument that names what does not exist (a method, a class) is a wrong argument, not a missing input.
+inline Error as_argument(Error error) {
+  error.code = ErrorCode::kInvalidArgument;
+  return error;
+}
+
 /// What a command that goes on after an error ends with: the first error's code.
 class ExitStatus {
  public:

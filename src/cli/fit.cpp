@@ -46,10 +46,10 @@ Result<void> make_folder(const std::string& folder) {
 
 Result<FitJob> prepare(const FitArguments& arguments) {
   FitJob job{{std::nullopt, arguments.depth_scale_m, arguments.axes}, {}, arguments.pipeline};
-  if (auto valid = validate(job.pipeline); !valid) return tl::unexpected(valid.error());
+  if (auto valid = validate(job.pipeline); !valid) return tl::unexpected(as_argument(valid.error()));
   if (!job.pipeline.recognition.only_class.empty()) {
     const auto known = find_class(builtin_library(), job.pipeline.recognition.only_class);
-    if (!known) return tl::unexpected(known.error());
+    if (!known) return tl::unexpected(as_argument(known.error()));
     job.pipeline.recognition.only_class = (*known)->class_name;
   }
   if (!arguments.camera.empty()) {

@@ -14,10 +14,12 @@ int run(int argc, char** argv) {
   app.set_version_flag("--version", "gfp " + std::string(gfp::version()));
   app.require_subcommand(1);
   app.footer("Every command has --help and --json. Exit codes follow sysexits.h.");
-#ifdef GFP_HAS_STAGES
   gfp::add_fit_command(app, status);
+  gfp::add_eval_command(app, status);
   gfp::add_primitive_command(app, status);
-#endif
+  gfp::add_config_command(app, status);
+  gfp::add_echo_command(app, status);
+  gfp::add_sub_command(app, status);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -73,7 +73,7 @@ void export_shape(const PrimitiveArguments& arguments, const Primitive& primitiv
 template <class Action>
 void with_primitive(const PrimitiveArguments& arguments, ExitStatus& status, Action&& action) {
   const auto primitive = find_class(builtin_library(), arguments.name);
-  if (!primitive) return status.fail(std::cerr, "primitive", primitive.error());
+  if (!primitive) return status.fail(std::cerr, "primitive", as_argument(primitive.error()));
   action(arguments, **primitive, status);
 }
 

@@ -34,13 +34,6 @@ void keep_best(std::vector<Placed>& all, int count) {
   if (all.size() > static_cast<std::size_t>(count)) all.resize(static_cast<std::size_t>(count));
 }
 
-/// What a fit that needs no class is believed to be worth beforehand: as much as an average class.
-double unknown_log_prior(const std::vector<Hypothesis>& hypotheses) {
-  double sum = 0;
-  for (const Hypothesis& hypothesis : hypotheses) sum += hypothesis.log_prior;
-  return hypotheses.empty() ? 0 : sum / static_cast<double>(hypotheses.size());
-}
-
 std::vector<Candidate> contour_all(const ObjectView& view, const std::vector<Placed>& all, const ModellingOptions& options) {
   std::vector<Candidate> candidates;
   for (const Placed& placed : all) candidates.push_back({model_contour(view, placed.placement, options), placed.log_prior});
@@ -53,7 +46,7 @@ std::vector<Candidate> search(const ObjectView& view, const PrimitiveLibrary& li
   keep_best(placed, options.budget.max_contours);
   auto candidates = timings.measure("modelling", [&] { return contour_all(view, placed, options.modelling); });
   auto superquadric = timings.measure(kSuperquadric, [&] { return fit_superquadric(view); });
-  candidates.push_back({std::move(superquadric), unknown_log_prior(hypotheses)});
+  candidates.push_back({std::move(superquadric), 0.0});  // what `unknown` is worth beforehand is for selection to say
   return candidates;
 }
 

@@ -48,7 +48,14 @@ void locate(Track& track, const ObjectView& view, const Scene& scene) {
 WarmStart warm_start_of(const SceneObject& object, const WarmStart& before) {
   const FittedModel& model = object.model;
   const bool unchanged = object.status == ObjectStatus::kUnchanged;
-  WarmStart warm{model.class_name, model.method, model.T_camera_object, model.size_m, model.modes, model.stable_pose, 0, model.evidence.cost, before.fits};
+  WarmStart warm;
+  warm.class_name = model.class_name;
+  warm.method = model.method;
+  warm.T_camera_object = model.T_camera_object;
+  warm.scale = model.size_m;
+  warm.modes = model.modes;
+  warm.stable_pose = model.stable_pose;
+  warm.cost = model.evidence.cost;
   warm.unchanged_frames = unchanged ? before.unchanged_frames + 1 : 0;
   warm.fits = unchanged ? before.fits : before.fits + 1;
   return warm;
