@@ -130,6 +130,11 @@ void masked_slopes(const float* w, std::ptrdiff_t stride, int radius, float step
   }
 }
 
+void clear_broken(Slopes& slopes) {
+  for (int i = 0; i < kLanes; ++i)
+    if (slopes.clean[i] == 0.0F) slopes.du[i] = kNaN;
+}
+
 // With undistorted rays, the slopes over the ray are f times those over the pixel.
 __attribute__((target_clones("arch=x86-64-v3", "default")))
 void normals_of(const Slopes& slopes, const float* x, const float* y, const float* z, int count, float fx, float fy, float* nx, float* ny, float* nz) {
@@ -199,7 +204,9 @@ void box_normals(const DepthPlanes& depth, const BoxNormalsOptions& options, con
       const auto i = static_cast<std::size_t>(v) * static_cast<std::size_t>(depth.width) + static_cast<std::size_t>(u);
       Slopes slopes;
       clean_slopes(&tile.row_sum[t], &tile.row_moment[t], &tile.row_broken[t], tile.stride, radius, slopes);
-      if (!std::all_of(slopes.clean, slopes.clean + count, [](float clean) { return clean != 0.0F; }))
+      if (options.whole_boxes_only)
+        clear_broken(slopes);
+      else if (!std::all_of(slopes.clean, slopes.clean + count, [](float clean) { return clean != 0.0F; }))
         masked_slopes(&tile.inverse[t], tile.stride, radius, options.max_depth_step, slopes);
       if (depth.undistorted) {
         normals_of(slopes, depth.x + i, depth.y + i, depth.z + i, count, static_cast<float>(depth.fx), static_cast<float>(depth.fy), nx + i, ny + i, nz + i);

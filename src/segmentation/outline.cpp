@@ -6,7 +6,6 @@
 namespace gfp {
 namespace {
 
-constexpr int kBorderPx = 2;        // the outermost pixels of many sensors have no reading
 constexpr int kSearchPx = 24;       // an occluder's shadow without readings is this wide at most
 constexpr float kNearer = 0.015F;   // share of the depth by which an occluder is nearer
 
@@ -55,13 +54,10 @@ void describe_outline(const OrganizedCloud& cloud, const Image<std::int32_t>& la
   const int width = cloud.width;
   segment.bbox = bounding_box(segment.pixels, width);
   const std::int32_t own = labels.pixels[static_cast<std::size_t>(segment.pixels.front())];
-  std::vector<float> heights;
-  heights.reserve(segment.pixels.size());
-  for (const auto i : segment.pixels) {
-    const Eigen::Vector3d p = cloud.point(static_cast<std::size_t>(i)).cast<double>();
-    heights.push_back(static_cast<float>(support != nullptr ? support->height(p) : -p.y()));
-  }
-  std::vector<float> sorted = heights;
+  const auto height = [&](std::int32_t i) { return support != nullptr ? static_cast<float>(support->height(cloud, i)) : -cloud.y[static_cast<std::size_t>(i)]; };
+  std::vector<float> sorted;
+  const std::size_t every = segment.pixels.size() / 4000 + 1;  // plenty for the quantiles
+  for (std::size_t k = 0; k < segment.pixels.size(); k += every) sorted.push_back(height(segment.pixels[k]));
   const auto quantile = [&](double share) {
     const auto nth = sorted.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(sorted.size() - 1));
     std::nth_element(sorted.begin(), nth, sorted.end());
@@ -71,20 +67,22 @@ void describe_outline(const OrganizedCloud& cloud, const Image<std::int32_t>& la
   segment.height_m = support != nullptr ? top : top - bottom;
 
   int cut = 0, top_pixels = 0, top_cut = 0, hidden = 0;
-  for (std::size_t k = 0; k < segment.pixels.size(); ++k) {
-    const int u = segment.pixels[k] % width, v = segment.pixels[k] / width;
-    const bool at_border = u < readings.u0 + kBorderPx || v < readings.v0 + kBorderPx || u >= readings.u1 - kBorderPx || v >= readings.v1 - kBorderPx;
-    bool is_hidden = false;
+  for (const auto i : segment.pixels) {
+    const int u = i % width, v = i / width;
+    const bool border = at_border(readings, u, v);
+    bool is_hidden = false, on_outline = false;
     constexpr int kSteps[4][2] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}};
     for (const auto& step : kSteps) {
       const int nu = u + step[0], nv = v + step[1];
-      if (labels.contains(nu, nv) && labels.at(nu, nv) != own) is_hidden = is_hidden || nearer_segment(cloud, labels, own, u, v, step[0], step[1]);
+      if (!labels.contains(nu, nv) || labels.at(nu, nv) == own) continue;
+      on_outline = true;
+      is_hidden = is_hidden || nearer_segment(cloud, labels, own, u, v, step[0], step[1]);
     }
-    cut += at_border;
+    cut += border;
     hidden += is_hidden;
-    if (heights[k] >= near_top) {
+    if ((border || on_outline) && height(i) >= near_top) {
       ++top_pixels;
-      top_cut += at_border || is_hidden;
+      top_cut += border || is_hidden;
     }
   }
   segment.touches_border = cut >= 3;

@@ -1,6 +1,7 @@
 #include "segmentation/pixel_classes.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 namespace gfp {
@@ -13,6 +14,7 @@ struct Kernel {
 };
 
 constexpr int kBlock = 32;
+constexpr int kOnly = 1;             // near_plane() found pixels on the plane and none above
 constexpr float kMinDepth = 0.05F;  // metres: no sensor of ours reads nearer
 
 __attribute__((target_clones("arch=x86-64-v3", "default")))
@@ -20,13 +22,13 @@ void mark_valid(const float* z, int count, float min_depth, float max_depth, std
   for (int i = 0; i < count; ++i) classes[i] = ((z[i] >= min_depth) & (z[i] <= max_depth)) ? kElsewhere : kInvalidPixel;
 }
 
-// Which of up to kBlock pixels are on (1) or above (2) the plane and still free; returns whether any is.
+// Which of up to kBlock pixels are on (1) or above (2) the plane and still free; returns the union of these bits.
 __attribute__((target_clones("arch=x86-64-v3", "default")))
-bool near_plane(const float* x, const float* y, const float* z, const std::uint8_t* classes, int count, const Kernel& k, std::uint8_t* near) {
+int near_plane(const float* x, const float* y, const float* z, const float* ground, const std::uint8_t* classes, int count, const Kernel& k, std::uint8_t* near) {
   const float ux = k.up[0], uy = k.up[1], uz = k.up[2], offset = k.camera_height, band0 = k.band, band2 = k.band_per_m2, high = k.max_height;
   std::int32_t any = 0;
   for (int i = 0; i < count; ++i) {
-    const float height = ux * x[i] + uy * y[i] + uz * z[i] + offset;
+    const float height = ux * x[i] + uy * y[i] + uz * z[i] + offset - ground[i];
     const float band = band0 + band2 * z[i] * z[i];
     const std::int32_t on = (height >= -band) & (height <= band), above = (height > band) & (height <= high);
     const std::int32_t free = classes[i] == kElsewhere;
@@ -34,7 +36,7 @@ bool near_plane(const float* x, const float* y, const float* z, const std::uint8
     near[i] = static_cast<std::uint8_t>(value);
     any |= value;
   }
-  return any != 0;
+  return any;
 }
 
 __attribute__((target_clones("arch=x86-64-v3", "default")))
@@ -53,18 +55,54 @@ void assign(const std::uint8_t* near, int count, std::uint8_t on, std::uint8_t a
   }
 }
 
+// Per row, the columns [first, second) that surely see the inside of the outline where they see the plane: between the
+// two edges of the outline's image, which is convex as well. Empty where the camera's distortion bends it.
+std::vector<std::pair<int, int>> outline_spans(const OrganizedCloud& cloud, const FlatSurface& surface) {
+  std::vector<std::pair<int, int>> spans(static_cast<std::size_t>(cloud.height), {0, 0});
+  if (cloud.camera.distortion != DistortionModel::kNone) return spans;
+  std::vector<Eigen::Vector2d> image;
+  for (const Eigen::Vector3d& corner : surface.corners) {
+    if (corner.z() < 0.05) return spans;
+    image.push_back(cloud.camera.project(corner));
+  }
+  for (int v = 0; v < cloud.height; ++v) {
+    double left = cloud.width, right = -1;
+    for (std::size_t k = 0; k < image.size(); ++k) {
+      const auto &a = image[k], &b = image[(k + 1) % image.size()];
+      if ((a.y() <= v) == (b.y() <= v)) continue;
+      const double u = a.x() + (v - a.y()) / (b.y() - a.y()) * (b.x() - a.x());
+      left = std::min(left, u);
+      right = std::max(right, u);
+    }
+    spans[static_cast<std::size_t>(v)] = {static_cast<int>(std::ceil(std::clamp(left, 0.0, 1.0 * cloud.width))),
+                                          static_cast<int>(std::floor(std::clamp(right, 0.0, 1.0 * cloud.width)))};
+  }
+  return spans;
+}
+
 void apply(const OrganizedCloud& cloud, const FlatSurface& surface, const Kernel& kernel, std::vector<std::uint8_t>& classes) {
   std::uint8_t near[kBlock];
-  const int pixels = static_cast<int>(classes.size());
-  for (int i = 0; i < pixels; i += kBlock) {
-    const int count = std::min(kBlock, pixels - i);
-    const float *x = &cloud.x[static_cast<std::size_t>(i)], *y = &cloud.y[static_cast<std::size_t>(i)], *z = &cloud.z[static_cast<std::size_t>(i)];
-    if (!near_plane(x, y, z, &classes[static_cast<std::size_t>(i)], count, kernel, near)) continue;
-    for (std::size_t e = 0; e < surface.edges.size(); ++e) {
-      const Eigen::Vector3f edge = surface.edges[e].cast<float>();
-      clear_outside(x, y, z, count, edge.x(), edge.y(), edge.z(), static_cast<float>(surface.edge_offsets_m[e]) + kernel.margin, near);
+  std::vector<float> ground(static_cast<std::size_t>(cloud.width));
+  const auto spans = outline_spans(cloud, surface);
+  for (int v = 0; v < cloud.height; ++v) {
+    const auto inside = spans[static_cast<std::size_t>(v)];
+    surface.ground.interpolate_row(v, cloud.width, ground.data());
+    for (int u = 0; u < cloud.width; u += kBlock) {
+      const int count = std::min(kBlock, cloud.width - u);
+      const auto i = static_cast<std::size_t>(v) * static_cast<std::size_t>(cloud.width) + static_cast<std::size_t>(u);
+      const float *x = &cloud.x[i], *y = &cloud.y[i], *z = &cloud.z[i];
+      const int found = near_plane(x, y, z, &ground[static_cast<std::size_t>(u)], &classes[i], count, kernel, near);
+      if (found == 0) continue;
+      if (found == kOnly && u >= inside.first && u + count <= inside.second) {  // plain surface, the usual case
+        assign(near, count, kernel.on, kernel.above, &classes[i]);
+        continue;
+      }
+      for (std::size_t e = 0; e < surface.edges.size(); ++e) {
+        const Eigen::Vector3f edge = surface.edges[e].cast<float>();
+        clear_outside(x, y, z, count, edge.x(), edge.y(), edge.z(), static_cast<float>(surface.edge_offsets_m[e]) + kernel.margin, near);
+      }
+      assign(near, count, kernel.on, kernel.above, &classes[i]);
     }
-    assign(near, count, kernel.on, kernel.above, &classes[static_cast<std::size_t>(i)]);
   }
 }
 

@@ -5,7 +5,9 @@
 #include <limits>
 #include <numeric>
 
+#include "segmentation/assemble.hpp"
 #include "segmentation/components.hpp"
+#include "segmentation/enclosed.hpp"
 #include "segmentation/outline.hpp"
 #include "segmentation/pixel_classes.hpp"
 #include "segmentation/supports.hpp"
@@ -13,6 +15,7 @@
 namespace gfp {
 namespace {
 
+constexpr double kWorkspaceDepth = 2.0;  // metres: beyond it the noise of a triangulating sensor is a centimetre and more
 constexpr int kWorthNaming = 60;  // pixels: fewer are noise that nobody wants to read about
 
 struct Candidate {
@@ -23,34 +26,41 @@ struct Candidate {
 // Where the points lie, in the support's frame (camera frame where there is none).
 Eigen::Vector3d extents(const OrganizedCloud& cloud, const PixelList& pixels, const Transform& T_frame_camera) {
   Eigen::Vector3d low = Eigen::Vector3d::Constant(1e9), high = -low;
-  for (const auto i : pixels) {
-    const Eigen::Vector3d p = T_frame_camera * cloud.point(static_cast<std::size_t>(i)).cast<double>();
+  for (std::size_t k = 0; k < pixels.size(); k += pixels.size() / 4000 + 1) {
+    const Eigen::Vector3d p = T_frame_camera * cloud.point(static_cast<std::size_t>(pixels[k])).cast<double>();
     low = low.cwiseMin(p);
     high = high.cwiseMax(p);
   }
   return high - low;
 }
 
+bool cut_by_image(const OrganizedCloud& cloud, const PixelRect& readings, const PixelList& pixels) {
+  return 3 <= std::count_if(pixels.begin(), pixels.end(), [&](std::int32_t i) { return at_border(readings, i % cloud.width, i / cloud.width); });
+}
+
 // Empty: an object. Else the reason why not.
-std::string reject_reason(const OrganizedCloud& cloud, const Supports& supports, const SegmentationOptions& options, const Candidate& candidate) {
+std::string reject_reason(const OrganizedCloud& cloud, const Supports& supports, const SegmentationOptions& options, const PixelRect& readings, const Candidate& candidate) {
   if (static_cast<int>(candidate.pixels.size()) < options.min_points) return "too_small";
   const FlatSurface* support = candidate.support < 0 ? nullptr : &supports.surfaces[static_cast<std::size_t>(candidate.support)];
   const Transform T_support_camera = support == nullptr ? Transform::Identity() : supports.planes[static_cast<std::size_t>(candidate.support)].T_camera_support.inverse();
   const Eigen::Vector3d size = extents(cloud, candidate.pixels, T_support_camera);
-  if (size.head<2>().maxCoeff() > options.max_size_m) return "too_large";
+  if (size.maxCoeff() > options.max_size_m) return "too_large";
+  // What the image cuts goes on outside: half of the greatest size is as much as may be seen of it.
+  if (size.maxCoeff() > 0.5 * options.max_size_m && cut_by_image(cloud, readings, candidate.pixels)) return "too_large";
   if (support == nullptr) return {};
 
   std::vector<float> heights;
-  int outside = 0;
-  for (const auto i : candidate.pixels) {
-    const Eigen::Vector3d p = cloud.point(static_cast<std::size_t>(i)).cast<double>();
-    heights.push_back(static_cast<float>(support->height(p)));
-    outside += support->inside(p) < 0;
+  int outside = 0, far = 0;
+  for (std::size_t k = 0; k < candidate.pixels.size(); k += candidate.pixels.size() / 4000 + 1) {
+    const std::int32_t i = candidate.pixels[k];
+    heights.push_back(static_cast<float>(support->height(cloud, i)));
+    far += static_cast<double>(cloud.z[static_cast<std::size_t>(i)]) > kWorkspaceDepth;
+    outside += support->inside(cloud.point(static_cast<std::size_t>(i)).cast<double>()) < 0;
   }
   const auto nth = heights.begin() + static_cast<std::ptrdiff_t>(0.95 * static_cast<double>(heights.size()));
   std::nth_element(heights.begin(), nth, heights.end());
   if (*nth < options.min_height_m) return "too_flat";
-  if (2 * outside > static_cast<int>(candidate.pixels.size())) return "outside_workspace";
+  if (2 * std::max(outside, far) > static_cast<int>(heights.size())) return "outside_workspace";
   return {};
 }
 
@@ -93,9 +103,8 @@ int support_of(const OrganizedCloud& cloud, const Supports& supports, const Pixe
     std::vector<double> heights;
     std::size_t inside = 0;
     for (std::size_t i = 0; i < pixels.size(); i += step) {
-      const Eigen::Vector3d p = cloud.point(static_cast<std::size_t>(pixels[i])).cast<double>();
-      heights.push_back(surface.height(p));
-      inside += surface.inside(p) >= 0;
+      heights.push_back(surface.height(cloud, pixels[i]));
+      inside += surface.inside(cloud.point(static_cast<std::size_t>(pixels[i])).cast<double>()) >= 0;
     }
     const auto low = heights.begin() + static_cast<std::ptrdiff_t>(heights.size() / 20);
     std::nth_element(heights.begin(), low, heights.end());
@@ -108,17 +117,42 @@ int support_of(const OrganizedCloud& cloud, const Supports& supports, const Pixe
   return best;
 }
 
+// Clusters are cut where surfaces end and put together again by what makes an object.
+std::vector<Candidate> objects_of(const OrganizedCloud& cloud, const SegmentationOptions& options, const std::vector<std::uint8_t>& valid,
+                                  const Supports& supports, const std::vector<PixelList>& clusters) {
+  std::vector<int> support;
+  for (const PixelList& cluster : clusters) support.push_back(support_of(cloud, supports, cluster));
+  const PieceMap map = cut_into_pieces(cloud, clusters, options.cluster_tolerance_m);
+  const Eigen::Vector3d up = supports.surfaces.empty() ? Eigen::Vector3d(0, -1, 0) : supports.surfaces.front().up;
+  const auto contacts = find_contacts(cloud, map, valid, options.cluster_tolerance_m, up);
+  std::vector<const FlatSurface*> surfaces;
+  for (const int cluster : map.cluster) {
+    const int s = support[static_cast<std::size_t>(cluster)];
+    surfaces.push_back(s < 0 ? nullptr : &supports.surfaces[static_cast<std::size_t>(s)]);
+  }
+  const auto object = assemble(cloud, map, valid, contacts, surfaces, options);
+  std::vector<Candidate> candidates(object.empty() ? 0 : static_cast<std::size_t>(*std::max_element(object.begin(), object.end())) + 1);
+  for (std::size_t p = 0; p < object.size(); ++p) {
+    PixelList& pixels = candidates[static_cast<std::size_t>(object[p])].pixels;
+    pixels.insert(pixels.end(), map.pixels[p].begin(), map.pixels[p].end());
+  }
+  for (Candidate& candidate : candidates) {
+    std::sort(candidate.pixels.begin(), candidate.pixels.end());
+    candidate.support = support_of(cloud, supports, candidate.pixels);
+    if (candidate.support >= 0 && static_cast<int>(candidate.pixels.size()) >= options.min_points)
+      take_enclosed(cloud, valid, supports.surfaces[static_cast<std::size_t>(candidate.support)], candidate.pixels);
+  }
+  std::sort(candidates.begin(), candidates.end(), [](const auto& a, const auto& b) { return a.pixels.front() < b.pixels.front(); });
+  return candidates;
+}
+
 std::vector<Candidate> clusters(const OrganizedCloud& cloud, const SegmentationOptions& options, const std::vector<std::uint8_t>& classes,
                                 const Supports& supports) {
   const std::uint8_t lowest = supports.planes.empty() ? kElsewhere : kAbove, highest = supports.planes.empty() ? kElsewhere : 255;
   std::vector<std::uint8_t> free(classes.size());
   for (std::size_t i = 0; i < classes.size(); ++i) free[i] = classes[i] >= lowest && classes[i] <= highest;
-  std::vector<Candidate> candidates;
-  for (PixelList& pixels : connected_components(cloud, free, classes, {options.cluster_tolerance_m, options.cluster_tolerance_m}, kWorthNaming)) {
-    const int support = support_of(cloud, supports, pixels);
-    candidates.push_back({std::move(pixels), support});
-  }
-  return candidates;
+  return objects_of(cloud, options, classes, supports,
+                    connected_components(cloud, free, classes, {options.cluster_tolerance_m, options.cluster_tolerance_m}, kWorthNaming));
 }
 
 void keep_largest(int count, std::vector<Candidate>& candidates, std::vector<RejectedSegment>& rejected) {
@@ -142,6 +176,7 @@ Segments segment_cloud(const OrganizedCloud& cloud, const SegmentationOptions& o
   const Supports supports = find_supports(cloud, options, up_camera, last);
   const auto classes = classify_pixels(cloud, supports, options);
 
+  const PixelRect readings = readings_rect(cloud, classes);
   std::vector<Candidate> taken;
   if (mask.width == cloud.width && mask.height == cloud.height && !mask.empty()) {
     taken.push_back({masked_pixels(classes, mask), -1});
@@ -149,7 +184,7 @@ Segments segment_cloud(const OrganizedCloud& cloud, const SegmentationOptions& o
     else taken.front().support = support_of(cloud, supports, taken.front().pixels);
   } else {
     for (Candidate& candidate : clusters(cloud, options, classes, supports)) {
-      std::string reason = reject_reason(cloud, supports, options, candidate);
+      std::string reason = reject_reason(cloud, supports, options, readings, candidate);
       if (reason.empty()) taken.push_back(std::move(candidate));
       else result.rejected.push_back({static_cast<int>(candidate.pixels.size()), std::move(reason)});
     }
@@ -163,7 +198,6 @@ Segments segment_cloud(const OrganizedCloud& cloud, const SegmentationOptions& o
     result.planes.push_back(supports.planes[static_cast<std::size_t>(order[r])]);
   }
   label_pixels(classes, rank, taken, result.labels);
-  const PixelRect readings = readings_rect(cloud, classes);
   for (Candidate& candidate : taken) {
     Segment segment;
     segment.pixels = std::move(candidate.pixels);

@@ -4,18 +4,24 @@
 #include <vector>
 
 #include "gfp/segmentation/segment_cloud.hpp"
-#include "segmentation/plane_candidates.hpp"
+#include "segmentation/ground.hpp"
 
 namespace gfp {
 
-/// A plane as the per-pixel loops need it: height(p) = up . p + camera_height_m; |height| <= band_m + band_per_m2 z^2 lies on it.
+/// A plane as the per-pixel loops need it: height(p) = up . p + camera_height_m - ground(pixel); a reading with
+/// |height| <= band(z) lies on it.
 struct FlatSurface {
   Eigen::Vector3d up = Eigen::Vector3d::Zero();
   double camera_height_m = 0;
   double band_m = 0, band_per_m2 = 0;
+  Ground ground;
   std::vector<Eigen::Vector3d> edges;  ///< Inner unit normals of the outline's edges, camera frame, in the plane,
   std::vector<double> edge_offsets_m;  ///< and edge . p + offset >= 0 inside. Counter-clockwise about `up`.
-  double height(const Eigen::Vector3d& p) const { return up.dot(p) + camera_height_m; }
+  std::vector<Eigen::Vector3d> corners;  ///< Of the outline, on the plane, camera frame.
+  double height(const OrganizedCloud& cloud, std::int32_t pixel) const {
+    return up.dot(cloud.point(static_cast<std::size_t>(pixel)).cast<double>()) + camera_height_m -
+           static_cast<double>(ground.at(pixel % cloud.width, pixel / cloud.width));
+  }
   double band(double z) const { return band_m + band_per_m2 * z * z; }
   /// Distance to the nearest edge of the outline's prism, positive inside.
   double inside(const Eigen::Vector3d& p) const;
@@ -30,7 +36,7 @@ struct Supports {
 
 /// Which flat parts carry objects. Up is `up_camera` where it is known; else the evidence decides: surfaces that the camera
 /// looks down on (normal within 75 deg of the image's up) before those it faces squarely. Parallel surfaces smaller than an
-/// object and not far above another support are faces of objects. `last` is tried before the image is searched.
+/// object and not far above another support are faces of objects. `last`, where given, is looked for as well.
 Supports find_supports(const OrganizedCloud& cloud, const SegmentationOptions& options,
                        const std::optional<Eigen::Vector3d>& up_camera, const SupportPlane* last);
 

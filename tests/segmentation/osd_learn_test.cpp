@@ -20,7 +20,7 @@ TEST(OsdLearn, EveryLabelledObjectIsCoveredByOneSegment) {
     objects += covered.objects;
     RecordProperty(scene.name, std::to_string(covered.mean()));
   }
-  EXPECT_GE(sum / objects, 0.85);
+  EXPECT_GE(sum / objects, 0.93);
 }
 
 }  // namespace

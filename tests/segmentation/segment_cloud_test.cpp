@@ -115,6 +115,46 @@ TEST(SegmentCloud, SaysWhatIsCutAndWhatIsHidden) {
   }
 }
 
+// Two things that touch meet in a valley; one thing does not.
+TEST(SegmentCloud, DividesWhatTouchesInAValley) {
+  ToyScene scene;
+  scene.boxes.push_back({{-0.16, -0.05, 0.0}, {-0.04, 0.05, 0.12}, 0.3});
+  scene.cylinders.push_back({{0.03, -0.02}, 0.055, 0.0, 0.16});
+  for (const std::uint64_t seed : {1U, 2U, 3U}) {
+    const auto seen = test::view(scene, 1.0, seed);
+    const Segments segments = segment_cloud(seen.cloud);
+    EXPECT_EQ(segments.segments.size(), 2U) << "seed " << seed;
+    EXPECT_GT(best_overlap(segments, seen.truth, 0), 0.9) << "seed " << seed;
+    EXPECT_GT(best_overlap(segments, seen.truth, 1), 0.9) << "seed " << seed;
+  }
+}
+
+// Outer wall, inner wall and floor of a bowl are one object, although the near rim parts them in the image.
+TEST(SegmentCloud, KeepsHollowThingsWhole) {
+  for (const auto& [radius, height] : {std::pair{0.08, 0.09}, {0.045, 0.10}}) {
+    ToyScene scene;
+    scene.cylinders.push_back({{0.05, 0.0}, radius, 0.0, height, true});
+    for (const std::uint64_t seed : {1U, 2U, 3U}) {
+      const auto seen = test::view(scene, 1.0, seed);
+      const Segments segments = segment_cloud(seen.cloud);
+      EXPECT_EQ(segments.segments.size(), 1U) << "radius " << radius << " seed " << seed;
+      EXPECT_GT(best_overlap(segments, seen.truth, 0), 0.9) << "radius " << radius << " seed " << seed;
+    }
+  }
+}
+
+// A box that a nearer, slimmer one divides in the image stays one object.
+TEST(SegmentCloud, JoinsWhatANearerObjectDivides) {
+  ToyScene scene;
+  scene.boxes.push_back({{-0.13, 0.06, 0.0}, {0.13, 0.14, 0.07}});
+  scene.boxes.push_back({{-0.02, -0.16, 0.0}, {0.02, -0.10, 0.24}});
+  const auto seen = test::view(scene, 1.0);
+  const Segments segments = segment_cloud(seen.cloud);
+  EXPECT_EQ(segments.segments.size(), 2U);
+  EXPECT_GT(best_overlap(segments, seen.truth, 0), 0.9);
+  EXPECT_GT(best_overlap(segments, seen.truth, 1), 0.9);
+}
+
 TEST(SegmentCloud, RejectsWithAReason) {
   ToyScene scene;
   scene.cylinders.push_back({{-0.2, 0.05}, 0.17, 0.0, 0.1});

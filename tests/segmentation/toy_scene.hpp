@@ -16,7 +16,7 @@ namespace gfp::test {
 /// World frame: z up, the table's surface is z = 0; the camera stands at (0, -distance cos, distance sin) and looks at the origin.
 struct ToyScene {
   struct Box { Eigen::Vector3d low, high; double yaw_rad = 0; };
-  struct Cylinder { Eigen::Vector2d centre; double radius, bottom, top; };
+  struct Cylinder { Eigen::Vector2d centre; double radius, bottom, top; bool hollow = false; };  ///< Hollow: open at the top, 4 mm of floor.
   std::vector<Box> boxes;
   std::vector<Cylinder> cylinders;
   double table_half_x = 0.5, table_half_y = 0.35, floor_z = -0.75;
@@ -65,9 +65,14 @@ struct ToyScene {
   static double cast_cylinder(const Cylinder& cylinder, const Eigen::Vector3d& origin, const Eigen::Vector3d& ray) {
     const Eigen::Vector2d o = origin.head<2>() - cylinder.centre, d = ray.head<2>();
     const double top = (cylinder.top - origin.z()) / ray.z();
-    if ((o + top * d).norm() <= cylinder.radius) return top;
+    const bool enters_top = (o + top * d).norm() <= cylinder.radius;
+    if (enters_top && !cylinder.hollow) return top;
     const double a = d.squaredNorm(), b = o.dot(d), square = b * b - a * (o.squaredNorm() - cylinder.radius * cylinder.radius);
     if (square < 0) return -1;
+    if (enters_top) {
+      const double far_wall = (-b + std::sqrt(square)) / a, floor = (cylinder.bottom + 0.004 - origin.z()) / ray.z();
+      return std::min(far_wall, floor);
+    }
     const double side = (-b - std::sqrt(square)) / a, z = origin.z() + side * ray.z();
     return z >= cylinder.bottom && z <= cylinder.top ? side : -1;
   }

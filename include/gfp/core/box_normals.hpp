@@ -15,6 +15,7 @@ struct DepthPlanes {
 struct BoxNormalsOptions {
   int radius_px = 4;             ///< Half side of the box, [1, kMaxBoxRadius].
   float max_depth_step = 0.02F;  ///< Readings that differ from the centre's by more than this share of its depth are another surface.
+  bool whole_boxes_only = false; ///< NaN instead of the second way (below): four times faster, and blind at edges and holes.
 };
 inline constexpr int kMaxBoxRadius = 20;
 
@@ -24,7 +25,7 @@ inline constexpr int kMaxBoxRadius = 20;
 /// A plane is linear in inverse depth, 1/z = a ray_x + b ray_y + c, with the normal along -(a, b, c). Where the box holds one
 /// whole surface, the slopes are least squares over all its pixels, by separable sums (moments of 1/z; the pixel coordinates'
 /// own moments are constants). Elsewhere they are least squares over every second pixel of the box that has a reading within
-/// `max_depth_step` of the centre's depth. Cost: about 5 ns a pixel.
+/// `max_depth_step` of the centre's depth. Cost: about 3 ns a pixel where the box is whole, 12 ns elsewhere.
 void box_normals(const DepthPlanes& depth, const BoxNormalsOptions& options, const PixelRect& rect, float* nx, float* ny, float* nz);
 
 }  // namespace gfp

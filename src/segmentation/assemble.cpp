@@ -1,0 +1,275 @@
+#include "segmentation/assemble.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+
+#include "segmentation/piece_shape.hpp"
+
+namespace gfp {
+namespace {
+
+constexpr int kFragmentPixels = 250;      // smaller pieces are fragments at a cut,
+constexpr int kFragmentShare = 12;        // and so are those below a twelfth of the other
+constexpr double kReachesSupport = 0.022; // a lower outline this near to the support stands on it
+constexpr double kSameHeight = 0.010;     // two parts of one rim, or of one box
+constexpr double kHollow = -0.0015;       // bulge of an inner wall: -2 mm for a mug, -10 mm for a bowl
+constexpr double kHangingGap = 0.05;      // a part is no farther from what it hangs on
+constexpr double kDividedGap = 0.30;      // an occluder hides no more of one object than this
+
+class Assembler {
+ public:
+  Assembler(const OrganizedCloud& cloud, const PieceMap& map, const std::vector<Contact>& contacts, const SegmentationOptions& options)
+      : cloud_(cloud), map_(map), options_(options), contacts_(contacts), root_(map.pixels.size()) {
+    for (std::size_t p = 0; p < root_.size(); ++p) root_[p] = static_cast<int>(p);
+  }
+
+  void shape(const std::vector<std::uint8_t>& valid, const std::vector<const FlatSurface*>& supports) {
+    for (std::size_t p = 0; p < root_.size(); ++p)
+      shapes_.push_back(piece_shape(cloud_, map_, valid, static_cast<int>(p), supports[p], options_.cluster_tolerance_m));
+  }
+
+  std::vector<int> run() {
+    repeat([&](const Contact& c) { return continues(c); });
+    attach_each([&](int p) { return is_fragment(p) ? strongest(p, [&](const Contact& c) { return c.touching > 0; }) : -1; });
+    repeat([&](const Contact& c) { return continues(c) || encloses(c); });
+    join_rims();
+    attach_each([&](int p) { return hangs(p) ? hanging_on(p) : far_side_of(p); });
+    join_rims();
+    join_divided();
+    std::vector<int> number(root_.size(), -1), object(root_.size());
+    int count = 0;
+    for (int p = 0; p < static_cast<int>(root_.size()); ++p) {
+      int& n = number[static_cast<std::size_t>(find(p))];
+      if (n < 0) n = count++;
+      object[static_cast<std::size_t>(p)] = n;
+    }
+    return object;
+  }
+
+ private:
+  int find(int p) const {
+    while (root_[static_cast<std::size_t>(p)] != p) p = root_[static_cast<std::size_t>(p)];
+    return p;
+  }
+  const PieceShape& of(int p) const { return shapes_[static_cast<std::size_t>(p)]; }
+
+  // Joins two groups and sums their contacts up; the lower index stays the root.
+  void join(int a, int b) {
+    a = find(a);
+    b = find(b);
+    if (a == b) return;
+    if (b < a) std::swap(a, b);
+    root_[static_cast<std::size_t>(b)] = a;
+    shapes_[static_cast<std::size_t>(a)].add(of(b));
+    std::map<std::pair<int, int>, Contact> merged;
+    for (Contact c : contacts_) {
+      int first = find(c.first), second = find(c.second);
+      if (first == second) continue;
+      if (second < first) {
+        std::swap(first, second);
+        std::swap(c.first_nearer, c.second_nearer);
+        std::swap(c.first_above, c.second_above);
+      }
+      c.first = first;
+      c.second = second;
+      const auto [at, fresh] = merged.try_emplace({first, second}, c);
+      if (!fresh) add(c, at->second);
+    }
+    contacts_.clear();
+    for (const auto& [key, c] : merged) contacts_.push_back(c);
+  }
+  static void add(const Contact& c, Contact& sum) {
+    sum.pairs += c.pairs;
+    sum.touching += c.touching;
+    sum.concave += c.concave;
+    sum.first_nearer += c.first_nearer;
+    sum.second_nearer += c.second_nearer;
+    sum.first_above += c.first_above;
+    sum.second_above += c.second_above;
+    sum.gap_m = std::min(sum.gap_m, c.gap_m);
+  }
+
+  template <class Rule>
+  void repeat(Rule&& rule) {
+    for (bool changed = true; changed;) {
+      changed = false;
+      for (const Contact& c : contacts_) {
+        if (!rule(c)) continue;
+        join(c.first, c.second);
+        changed = true;
+        break;
+      }
+    }
+  }
+
+  // `host(p)`: what group p belongs to, or -1. The smallest first: a fragment's fragment goes along with it.
+  template <class Host>
+  void attach_each(Host&& host) {
+    std::vector<int> order;
+    for (int p = 0; p < static_cast<int>(root_.size()); ++p)
+      if (find(p) == p) order.push_back(p);
+    std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return of(a).pixels < of(b).pixels; });
+    for (const int p : order) {
+      if (find(p) != p) continue;
+      if (const int h = host(p); h >= 0) join(p, h);
+    }
+  }
+
+  // The neighbour with the longest contact among those that `usable` admits; -1 where there is none.
+  template <class Usable>
+  int strongest(int p, Usable&& usable) const {
+    int best = -1, most = 0;
+    for (const Contact& c : contacts_) {
+      if ((c.first != p && c.second != p) || !usable(c)) continue;
+      const int other = c.first == p ? c.second : c.first;
+      if (of(other).pixels < of(p).pixels || c.touching <= most) continue;
+      most = c.touching;
+      best = other;
+    }
+    return best;
+  }
+
+  static bool continues(const Contact& c) { return c.touching >= 6 && 4 * c.touching >= c.pairs && 2 * c.concave <= c.touching; }
+
+  bool is_fragment(int p) const {
+    if (of(p).pixels < kFragmentPixels) return true;
+    for (const Contact& c : contacts_)
+      if ((c.first == p || c.second == p) && 4 * c.touching >= c.pairs && kFragmentShare * of(p).pixels < of(c.first == p ? c.second : c.first).pixels) return true;
+    return false;
+  }
+
+  // A floor within a wall: most of the smaller one's outline touches the other, which rises above it.
+  bool encloses(const Contact& c) const {
+    const bool first_smaller = of(c.first).pixels < of(c.second).pixels;
+    const PieceShape &inner = of(first_smaller ? c.first : c.second), &outer = of(first_smaller ? c.second : c.first);
+    int outline = 0;
+    for (const Contact& other : contacts_)
+      if (other.first == (first_smaller ? c.first : c.second) || other.second == (first_smaller ? c.first : c.second)) outline += other.pairs;
+    const double circumference = 3.5 * std::sqrt(static_cast<double>(inner.pixels));  // of a disc, in pixels across both axes
+    return inner.top_m < outer.top_m - 0.01 && c.touching > 0.5 * std::max<double>(circumference, outline);
+  }
+
+  // Behind the other's outline, as high as it, and hollow. Halves of one hollow are joined first: neither need be hollow alone.
+  void join_rims() {
+    repeat([&](const Contact& c) {
+      if (c.touching < 6 || std::abs(of(c.first).top_m - of(c.second).top_m) > kSameHeight) return false;
+      PieceShape both = of(c.first);
+      both.add(of(c.second));
+      return both.bulge_m() < kHollow && in_front_of_both(c.first, c.second, both.top_m) >= 0;
+    });
+    repeat([&](const Contact& c) {
+      if (2 * std::max(c.first_nearer, c.second_nearer) < c.pairs || c.pairs < 8) return false;
+      const PieceShape &front = of(c.first_nearer > c.second_nearer ? c.first : c.second), &back = of(c.first_nearer > c.second_nearer ? c.second : c.first);
+      if (std::abs(front.top_m - back.top_m) > kSameHeight || back.bulge_m() > kHollow) return false;
+      const double across = (front.mean_point() - back.mean_point()).norm();
+      return front.bulge_m() > back.bulge_m() && across <= 0.6 * options_.max_size_m;
+    });
+  }
+
+  // Nothing bears it: it ends above the support, and what is below its outline is farther away.
+  bool hangs(int p) const { return of(p).base_m > kReachesSupport && 10 * of(p).foot_hidden < 6 * of(p).foot; }
+
+  // A small part high up, close behind something that it is not higher than: the far side of a handle.
+  int far_side_of(int p) const {
+    if (of(p).base_m < 0.05) return -1;
+    for (const Contact& c : contacts_) {
+      if ((c.first != p && c.second != p) || c.gap_m > 0.03) continue;
+      const int other = c.first == p ? c.second : c.first;
+      if (8 * of(p).pixels < of(other).pixels && of(p).top_m <= of(other).top_m) return other;
+    }
+    return -1;
+  }
+
+  int hanging_on(int p) const {
+    for (const Contact& c : contacts_)
+      if (stands_on(c, p)) return -1;
+    if (const int touched = strongest(p, [](const Contact& c) { return c.touching >= 3; }); touched >= 0) return touched;
+    int nearest = -1;
+    double gap = kHangingGap;
+    for (const Contact& c : contacts_) {
+      if ((c.first != p && c.second != p) || c.gap_m >= gap) continue;
+      const int other = c.first == p ? c.second : c.first;
+      if (of(other).pixels < of(p).pixels) continue;
+      gap = c.gap_m;
+      nearest = other;
+    }
+    return nearest;
+  }
+
+  // It rises from a level top of the other, over most of the contact, and is more than a knob.
+  bool stands_on(const Contact& c, int p) const {
+    if (c.first != p && c.second != p) return false;
+    const int above = c.first == p ? c.first_above : c.second_above, other = c.first == p ? c.second : c.first;
+    return c.touching >= 10 && 2 * above >= c.touching && of(p).top_m - of(p).base_m >= 0.02 && 6 * of(p).pixels >= of(other).pixels;
+  }
+
+  // One surface on both sides of something nearer.
+  void join_divided() {
+    for (int a = 0; a < static_cast<int>(root_.size()); ++a)
+      for (int b = a + 1; b < static_cast<int>(root_.size()); ++b)
+        if (find(a) == a && find(b) == b && divided(a, b)) join(a, b);
+  }
+
+  bool divided(int a, int b) const {
+    const PieceShape &sa = of(a), &sb = of(b);
+    if (std::min(sa.pixels, sb.pixels) < kFragmentPixels) return false;
+    if (std::abs(sa.top_m - sb.top_m) > kSameHeight || std::abs(sa.base_m - sb.base_m) > 2 * kSameHeight) return false;
+    const Eigen::Vector3d na = sa.mean_normal().normalized(), nb = sb.mean_normal().normalized(), between = sb.mean_point() - sa.mean_point();
+    if (na.dot(nb) < 0.96 || between.norm() > options_.max_size_m) return false;
+    if (std::abs(between.dot((na + nb).normalized())) > 0.012) return false;
+    const int occluder = in_front_of_both(a, b);
+    return occluder >= 0 && hides_the_gap(a, b, occluder);
+  }
+
+  // A group in front of both; as high as `top_m` where that is given.
+  int in_front_of_both(int a, int b, double top_m = std::numeric_limits<double>::quiet_NaN()) const {
+    for (int o = 0; o < static_cast<int>(root_.size()); ++o)
+      if (o != a && o != b && find(o) == o && !(std::abs(of(o).top_m - top_m) > kSameHeight) && in_front(o, a) && in_front(o, b)) return o;
+    return -1;
+  }
+  bool in_front(int o, int p) const {
+    return std::any_of(contacts_.begin(), contacts_.end(), [&](const Contact& c) {
+      return (c.first == o && c.second == p && c.first_nearer >= 10) || (c.first == p && c.second == o && c.second_nearer >= 10);
+    });
+  }
+
+  // Along the line between the middles there is nothing but the two, the occluder and missing readings.
+  bool hides_the_gap(int a, int b, int occluder) const {
+    const Eigen::Vector3d pa = of(a).mean_point(), pb = of(b).mean_point();
+    int other = 0;
+    Eigen::Vector3d left = pa, entered = pb;
+    constexpr int kSteps = 200;
+    for (int k = 0; k <= kSteps; ++k) {
+      const Eigen::Vector3d p = pa + (pb - pa) * k / kSteps;
+      const Eigen::Vector2d pixel = cloud_.camera.project(p);
+      const int u = static_cast<int>(std::lround(pixel.x())), v = static_cast<int>(std::lround(pixel.y()));
+      if (u < 0 || v < 0 || u >= cloud_.width || v >= cloud_.height) return false;
+      const auto i = static_cast<std::size_t>(v) * static_cast<std::size_t>(cloud_.width) + static_cast<std::size_t>(u);
+      const int piece = map_.piece[i] < 0 ? -1 : find(map_.piece[i]);
+      if (piece == a) left = p;
+      if (piece == b && (entered - pb).norm() < 1e-12) entered = p;
+      other += cloud_.valid(i) && piece != a && piece != b && piece != occluder;
+    }
+    return 10 * other < kSteps && (entered - left).norm() <= kDividedGap;
+  }
+
+  const OrganizedCloud& cloud_;
+  const PieceMap& map_;
+  const SegmentationOptions& options_;
+  std::vector<Contact> contacts_;
+  std::vector<int> root_;
+  std::vector<PieceShape> shapes_;
+};
+
+}  // namespace
+
+std::vector<int> assemble(const OrganizedCloud& cloud, const PieceMap& map, const std::vector<std::uint8_t>& valid,
+                          const std::vector<Contact>& contacts, const std::vector<const FlatSurface*>& supports, const SegmentationOptions& options) {
+  Assembler assembler(cloud, map, contacts, options);
+  assembler.shape(valid, supports);
+  return assembler.run();
+}
+
+}  // namespace gfp

@@ -1,0 +1,79 @@
+#include "segmentation/enclosed.hpp"
+
+#include <algorithm>
+
+namespace gfp {
+namespace {
+
+constexpr std::size_t kMinPixels = 30;
+constexpr double kMinMeanHeight = 0.002;  // metres: the mean over many pixels of a support's noise is well below
+
+// The object's bounding box: pixels on a support that are still unvisited are 1.
+struct Box {
+  int u0, v0, width, height;
+  std::vector<std::uint8_t> open;
+};
+
+Box open_pixels(const OrganizedCloud& cloud, const std::vector<std::uint8_t>& classes, const PixelList& pixels) {
+  int u0 = cloud.width, u1 = 0;
+  for (const auto i : pixels) {
+    u0 = std::min(u0, i % cloud.width);
+    u1 = std::max(u1, i % cloud.width + 1);
+  }
+  const int v0 = pixels.front() / cloud.width, v1 = pixels.back() / cloud.width + 1;
+  Box box{u0, v0, u1 - u0, v1 - v0, {}};
+  box.open.reserve(static_cast<std::size_t>(box.width) * static_cast<std::size_t>(box.height));
+  for (int v = v0; v < v1; ++v)
+    for (int u = u0; u < u1; ++u) {
+      const auto c = classes[static_cast<std::size_t>(v) * static_cast<std::size_t>(cloud.width) + static_cast<std::size_t>(u)];
+      box.open.push_back(c >= kOnSupport && c < kAbove);
+    }
+  return box;
+}
+
+// Closes and returns the 4-connected open pixels around `seed`.
+std::vector<int> flood(Box& box, int seed) {
+  std::vector<int> region{seed};
+  box.open[static_cast<std::size_t>(seed)] = 0;
+  for (std::size_t next = 0; next < region.size(); ++next) {
+    const int i = region[next], u = i % box.width, v = i / box.width;
+    const auto visit = [&](int n) {
+      if (box.open[static_cast<std::size_t>(n)] == 0) return;
+      box.open[static_cast<std::size_t>(n)] = 0;
+      region.push_back(n);
+    };
+    if (u > 0) visit(i - 1);
+    if (u + 1 < box.width) visit(i + 1);
+    if (v > 0) visit(i - box.width);
+    if (v + 1 < box.height) visit(i + box.width);
+  }
+  return region;
+}
+
+}  // namespace
+
+void take_enclosed(const OrganizedCloud& cloud, const std::vector<std::uint8_t>& classes, const FlatSurface& support, PixelList& pixels) {
+  Box box = open_pixels(cloud, classes, pixels);
+  const int last_row = (box.height - 1) * box.width;
+  for (int u = 0; u < box.width; ++u)
+    for (const int border : {u, last_row + u})
+      if (box.open[static_cast<std::size_t>(border)] != 0) flood(box, border);
+  for (int v = 0; v < box.height; ++v)
+    for (const int border : {v * box.width, v * box.width + box.width - 1})
+      if (box.open[static_cast<std::size_t>(border)] != 0) flood(box, border);
+  const std::size_t before = pixels.size();
+  for (int i = 0; i < static_cast<int>(box.open.size()); ++i) {
+    if (box.open[static_cast<std::size_t>(i)] == 0) continue;
+    std::vector<int> region = flood(box, i);
+    if (region.size() < kMinPixels) continue;
+    double sum = 0;
+    for (int& r : region) {
+      r = (box.v0 + r / box.width) * cloud.width + box.u0 + r % box.width;
+      sum += support.height(cloud, r);
+    }
+    if (sum > kMinMeanHeight * static_cast<double>(region.size())) pixels.insert(pixels.end(), region.begin(), region.end());
+  }
+  if (pixels.size() != before) std::sort(pixels.begin(), pixels.end());
+}
+
+}  // namespace gfp
