@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "gfp/core/convex_hull.hpp"
+
 namespace gfp {
 namespace {
 
@@ -20,24 +22,6 @@ using Outline = std::vector<Eigen::Vector2d>;
 
 double cross(const Eigen::Vector2d& o, const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
   return (a.x() - o.x()) * (b.y() - o.y()) - (a.y() - o.y()) * (b.x() - o.x());
-}
-
-// Andrew's monotone chain; counter-clockwise, without collinear points.
-Outline convex_hull(Outline points) {
-  std::sort(points.begin(), points.end(), [](const auto& a, const auto& b) { return a.x() != b.x() ? a.x() < b.x() : a.y() < b.y(); });
-  if (points.size() < 3) return points;
-  Outline hull;
-  const auto half = [&](auto first, auto end) {
-    const std::size_t base = hull.size();
-    for (auto p = first; p != end; ++p) {
-      while (hull.size() >= base + 2 && cross(hull[hull.size() - 2], hull.back(), *p) <= 0) hull.pop_back();
-      hull.push_back(*p);
-    }
-    hull.pop_back();
-  };
-  half(points.begin(), points.end());
-  half(points.rbegin(), points.rend());
-  return hull;
 }
 
 double diameter(const Outline& outline) {
