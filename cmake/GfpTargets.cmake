@@ -6,8 +6,8 @@ set(CMAKE_POSITION_INDEPENDENT_CODE ON)
 set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
 
 find_program(GFP_CCACHE ccache)
-if(GFP_CCACHE)
-  set(CMAKE_CXX_COMPILER_LAUNCHER ${GFP_CCACHE})
+if(GFP_CCACHE)  # without these sloppinesses ccache does not cache what includes a precompiled header
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env CCACHE_SLOPPINESS=pch_defines,time_macros ${GFP_CCACHE})
   set(CMAKE_C_COMPILER_LAUNCHER ${GFP_CCACHE})
 endif()
 find_program(GFP_MOLD mold)
@@ -30,6 +30,24 @@ if(GFP_SANITIZE)
   add_link_options(-fsanitize=${GFP_SANITIZE})
 endif()
 
+# Parsing Eigen and the standard library is most of what a compilation costs: done once for the libraries, once for the tests.
+# Sources still include what they use; GFP_PRECOMPILE=OFF shows it.
+add_library(gfp_precompiled STATIC ${CMAKE_CURRENT_LIST_DIR}/precompiled.cpp)
+target_link_libraries(gfp_precompiled PRIVATE gfp::options Eigen3::Eigen)
+target_precompile_headers(gfp_precompiled PRIVATE <Eigen/Dense> <algorithm> <array> <cmath> <functional> <map> <memory> <optional> <span> <string> <string_view> <vector>)
+
+# gfp_precompile(<target> <precompiled>): executables are compiled as libraries are, else the compiler refuses the precompiled header.
+function(gfp_precompile target precompiled)
+  if(GFP_PRECOMPILE)
+    get_target_property(type ${target} TYPE)
+    if(type STREQUAL EXECUTABLE)
+      set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE OFF)
+      target_compile_options(${target} PRIVATE -fPIC)
+    endif()
+    target_precompile_headers(${target} REUSE_FROM ${precompiled})
+  endif()
+endfunction()
+
 # gfp_library(<folder> SOURCES a.cpp... [PUBLIC targets...] [PRIVATE targets...])
 # One static library a folder, gfp_<folder>, known to users as gfp::<folder>.
 function(gfp_library folder)
@@ -39,6 +57,7 @@ function(gfp_library folder)
   set_target_properties(gfp_${folder} PROPERTIES EXPORT_NAME ${folder})
   target_include_directories(gfp_${folder} PRIVATE ${PROJECT_SOURCE_DIR}/src)
   target_link_libraries(gfp_${folder} PUBLIC gfp::options ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE})
+  gfp_precompile(gfp_${folder} gfp_precompiled)
   install(TARGETS gfp_${folder} EXPORT gfpTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}/gfp)
 endfunction()
 
@@ -48,6 +67,7 @@ function(gfp_test name)
   add_executable(${name} ${ARG_SOURCES})
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/src ${PROJECT_SOURCE_DIR}/tests)
   target_link_libraries(${name} PRIVATE ${ARG_LINK} GTest::gtest_main GTest::gmock)
+  gfp_precompile(${name} gfp_tests_precompiled)
   set(properties TIMEOUT 300)
   if(ARG_LABELS)
     list(APPEND properties LABELS "${ARG_LABELS}")
