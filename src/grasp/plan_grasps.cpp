@@ -21,7 +21,7 @@ using Eigen::Vector3d;
 constexpr double kTightClearance = 0.4;    // share of the opening clearance where space is tight
 constexpr double kShallowDepth = 0.35;     // share of the pad depth where a finger would meet the table or the palm the object
 constexpr double kMarginLimit = 0.2;       // metres: collision_margin_m looks no farther
-constexpr int kMostChecks = 300;
+constexpr int kMostChecks = 200;
 
 /// One pose that was closed on the fitted mesh.
 struct ClosedGrasp {
@@ -78,6 +78,7 @@ class Planner {
   Obstruction close(ClosedGrasp& grasp, double depth_m);
   Obstruction obstruction(const ClosedGrasp& grasp, double sweep_m);
   bool hopeless(const JawPose& pose) const;
+  double least_depth(const JawPose& pose) const;
   void value(ClosedGrasp& grasp, const std::vector<ShapeDraw>& draws);
   Grasp published(const ClosedGrasp& grasp) const;
 
@@ -91,7 +92,7 @@ class Planner {
   Vector3d up_;
   Surroundings surroundings_;
   std::vector<float> sigma_;  // per triangle
-  bool approach_blocked_ = false, slips_ = false;  // why poses failed, for the reason code
+  bool held_ = false, approach_blocked_ = false, slips_ = false;  // whether a pose held, why others did not: the reason code
   std::vector<Vector3d> extremes_;
 };
 
@@ -113,7 +114,7 @@ bool Planner::observed(std::int32_t triangle) const {
 /// Whether even the shallowest grip puts the palm into one of the object's extreme points, or a fingertip below the table: a
 /// quick look that spares most poses the whole check.
 bool Planner::hopeless(const JawPose& pose) const {
-  const GripperBoxes boxes = gripper_boxes(gripper_, tcp_frame(pose, kShallowDepth * gripper_.pad_depth_m), pose.width_m, options_.pregrasp_offset_m);
+  const GripperBoxes boxes = gripper_boxes(gripper_, tcp_frame(pose, least_depth(pose)), pose.width_m, options_.pregrasp_offset_m);
   if (surroundings_.below_support(boxes, options_.scene_clearance_m)) return true;
   return std::any_of(extremes_.begin(), extremes_.end(), [&](const Vector3d& point) {
     return ((boxes.palm.T_box_world * point).cwiseAbs() - boxes.palm.half).maxCoeff() < 0;
@@ -121,16 +122,32 @@ bool Planner::hopeless(const JawPose& pose) const {
 }
 
 std::optional<ClosedGrasp> Planner::try_pose(const JawPose& pose) {
-  for (const double depth_share : {1.0, kShallowDepth})
+  double last_m = -1;
+  for (const double depth_m : {gripper_.pad_depth_m, kShallowDepth * gripper_.pad_depth_m, least_depth(pose)}) {
+    if (depth_m == last_m) continue;
+    last_m = depth_m;
     for (const double clearance_share : {1.0, kTightClearance}) {
       const double opening_m = pose.width_m + 2 * clearance_share * options_.opening_clearance_m;
       if (opening_m > gripper_.stroke_m) continue;
-      ClosedGrasp grasp{pose, tcp_frame(pose, depth_share * gripper_.pad_depth_m), opening_m, {}, {}, {}};
-      const Obstruction obstruction = close(grasp, depth_share * gripper_.pad_depth_m);
-      if (obstruction == Obstruction::kNone) return grasp;
-      if (obstruction != Obstruction::kFingers) break;  // a smaller opening would not help
+      ClosedGrasp grasp{pose, tcp_frame(pose, depth_m), opening_m, {}, {}, {}};
+      const Obstruction met = close(grasp, depth_m);
+      if (met == Obstruction::kNone) return grasp;
+      if (met != Obstruction::kFingers) break;  // a smaller opening would not help
     }
+  }
   return std::nullopt;
+}
+
+/// How far the tips reach past the contacts in the shallowest grip: a share of the pad, less where the table is nearer (a
+/// spoon is held by the very tips), never less than half a millimetre.
+double Planner::least_depth(const JawPose& pose) const {
+  const double shallow_m = kShallowDepth * gripper_.pad_depth_m;
+  const double downwards = -pose.approach.dot(up_);
+  if (downwards < 0.2) return shallow_m;
+  const double outer_m = 0.5 * pose.width_m + kTightClearance * options_.opening_clearance_m + gripper_.finger_thickness_m;
+  const double drop_m = 0.5 * gripper_.finger_width_m * std::abs(pose.approach.cross(pose.axis).dot(up_)) + outer_m * std::abs(pose.axis.dot(up_));
+  const double room_m = (surroundings_.height(pose.middle) - drop_m - options_.scene_clearance_m) / downwards - 1e-5;
+  return std::clamp(room_m, std::min(0.0005, shallow_m), shallow_m);
 }
 
 Obstruction Planner::obstruction(const ClosedGrasp& grasp, double sweep_m) {
@@ -145,7 +162,7 @@ Obstruction Planner::obstruction(const ClosedGrasp& grasp, double sweep_m) {
 Obstruction Planner::close(ClosedGrasp& grasp, double depth_m) {
   const Obstruction met = obstruction(grasp, options_.pregrasp_offset_m);
   if (met != Obstruction::kNone) {
-    approach_blocked_ = approach_blocked_ || obstruction(grasp, 0) == Obstruction::kNone;
+    if (!held_ && !approach_blocked_) approach_blocked_ = obstruction(grasp, 0) == Obstruction::kNone;
     return met;
   }
   const auto touches = close_jaw(mesh_, bvh_, gripper_, grasp.T_camera_tcp, grasp.opening_m);
@@ -215,25 +232,31 @@ Grasp Planner::published(const ClosedGrasp& closed) const {
 GraspPlan Planner::plan() {
   const double widest_m = gripper_.stroke_m - 2 * kTightClearance * options_.opening_clearance_m;
   const PairSearch search = find_antipodal_pairs(model_, mesh_, normals_, bvh_, gripper_.friction, gripper_.min_width_m, widest_m, options_);
-  if (search.pairs.empty()) return {{}, search.too_wide > 0 ? "too_wide" : "no_antipodal_pair"};
+  if (search.pairs.empty()) return {{}, search.too_wide > 0 ? "too_wide" : "no_antipodal_pair", 0};
 
   const auto wanted = static_cast<std::size_t>(options_.max_grasps);
+  const std::size_t enough = wanted + wanted / 2;  // some fall to their neighbours in the list, or to uncertainty
   std::vector<ClosedGrasp> closed;
+  GraspPlan plan;
   JawPoseQueue queue(search.pairs, scale_, up_, options_.approach_angles);
-  for (int checks = 0; closed.size() < 2 * wanted && checks < kMostChecks;) {
+  for (int checks = 0; closed.size() < enough && checks < kMostChecks;) {
     const auto pose = queue.next();
     if (!pose) break;
+    ++plan.poses_examined;
     if (std::any_of(closed.begin(), closed.end(), [&](const ClosedGrasp& other) { return alike(*pose, other.pose, 0.010, 0.94); })) continue;
     if (hopeless(*pose)) continue;
     ++checks;
     if (auto grasp = try_pose(*pose)) closed.push_back(*grasp);
+    held_ = !closed.empty();
   }
-  if (closed.empty()) return {{}, slips_ ? "not_force_closure" : approach_blocked_ ? "unreachable" : "all_in_collision"};
+  if (closed.empty()) {
+    plan.no_grasp_reason = slips_ ? "not_force_closure" : approach_blocked_ ? "unreachable" : "all_in_collision";
+    return plan;
+  }
 
   const std::vector<ShapeDraw> draws = draw_shapes(model_, options_.uncertainty_samples, options_.seed);
   for (ClosedGrasp& grasp : closed) value(grasp, draws);
   std::stable_sort(closed.begin(), closed.end(), [](const ClosedGrasp& a, const ClosedGrasp& b) { return a.score > b.score; });
-  GraspPlan plan;
   std::vector<JawPose> taken;
   for (const ClosedGrasp& grasp : closed) {
     if (plan.grasps.size() == wanted) break;
@@ -247,8 +270,8 @@ GraspPlan Planner::plan() {
 }  // namespace
 
 GraspPlan plan_grasps(const FittedModel& model, const GraspScene& scene, const Gripper& gripper, const PlanGraspsOptions& options) {
-  if (options.max_grasps == 0) return {{}, "not_planned"};
-  if (model.vertices.empty() || model.topology->triangles.empty()) return {{}, "no_antipodal_pair"};
+  if (options.max_grasps == 0) return {{}, "not_planned", 0};
+  if (model.vertices.empty() || model.topology->triangles.empty()) return {{}, "no_antipodal_pair", 0};
   return Planner(model, scene, gripper, options).plan();
 }
 

@@ -27,13 +27,13 @@ TriangleBvh& Surroundings::hierarchy(Neighbour& neighbour) {
   return *neighbour.bvh;
 }
 
-double Surroundings::height(const OrientedBox& box) const {
+double Surroundings::lowest(const OrientedBox& box) const {
   const Eigen::Vector3d centre = box.T_box_world.inverse().translation();
   return up_.dot(centre) - (box.T_box_world.linear() * up_).cwiseAbs().dot(box.half) - support_offset_;
 }
 
 bool Surroundings::below_support(const GripperBoxes& boxes, double clearance_m) const {
-  return has_support_ && (height(boxes.closing) < clearance_m || height(boxes.palm) < clearance_m);
+  return has_support_ && (lowest(boxes.closing) < clearance_m || lowest(boxes.palm) < clearance_m);
 }
 
 bool Surroundings::blocks(const GripperBoxes& boxes, double clearance_m) {
@@ -50,7 +50,7 @@ bool Surroundings::blocks(const GripperBoxes& boxes, double clearance_m) {
 double Surroundings::distance(const GripperBoxes& boxes, double limit_m) {
   double least = limit_m;
   for (const OrientedBox& box : {boxes.closing, boxes.palm}) {
-    if (has_support_) least = std::min(least, std::max(0.0, height(box)));
+    if (has_support_) least = std::min(least, std::max(0.0, lowest(box)));
     for (Neighbour& neighbour : neighbours_)
       if (bounds_box_distance(neighbour.centre, neighbour.extent, box) < least) least = hierarchy(neighbour).distance(box, least);
     for (const Eigen::Vector3d& point : points_) least = std::min(least, point_box_distance(point, box));

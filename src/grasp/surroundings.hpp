@@ -20,6 +20,8 @@ class Surroundings {
   bool blocks(const GripperBoxes& boxes, double clearance_m);
   /// Exact least distance of the gripper's closing and palm boxes, at most `limit_m`; 0 on contact.
   double distance(const GripperBoxes& boxes, double limit_m);
+  /// Of a point above the table; 1e300 without one.
+  double height(const Eigen::Vector3d& point) const { return has_support_ ? up_.dot(point) - support_offset_ : 1e300; }
   /// Table only: whether a box reaches below it.
   bool below_support(const GripperBoxes& boxes, double clearance_m) const;
 
@@ -30,7 +32,7 @@ class Surroundings {
     std::optional<TriangleBvh> bvh;
   };
   TriangleBvh& hierarchy(Neighbour& neighbour);
-  double height(const OrientedBox& box) const;
+  double lowest(const OrientedBox& box) const;
 
   bool has_support_ = false;
   Eigen::Vector3d up_ = Eigen::Vector3d::UnitZ();

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include "grasp/bvh_kernels.hpp"
 
@@ -46,6 +47,7 @@ struct TriangleBvh::Build {
   std::vector<std::array<Vector3d, 3>> corners;
   std::vector<Vector3d> centres;
   std::vector<std::int32_t> order;
+  std::vector<std::pair<double, std::int32_t>> keys;  // of one split
 
   std::size_t triangle(std::int32_t place) const { return static_cast<std::size_t>(order[static_cast<std::size_t>(place)]); }
 
@@ -55,11 +57,11 @@ struct TriangleBvh::Build {
     for (std::int32_t i = first; i < last; ++i) spread.include(centres[triangle(i)]);
     int axis = 0;
     spread.size().maxCoeff(&axis);
+    keys.clear();
+    for (std::int32_t i = first; i < last; ++i) keys.emplace_back(centres[triangle(i)][axis], order[static_cast<std::size_t>(i)]);
     const std::int32_t middle = first + (last - first) / 2;
-    std::nth_element(order.begin() + first, order.begin() + middle, order.begin() + last, [&](std::int32_t x, std::int32_t y) {
-      const double a = centres[static_cast<std::size_t>(x)][axis], b = centres[static_cast<std::size_t>(y)][axis];
-      return a != b ? a < b : x < y;
-    });
+    std::nth_element(keys.begin(), keys.begin() + (middle - first), keys.end());
+    std::transform(keys.begin(), keys.end(), order.begin() + first, [](const auto& key) { return key.second; });
     return middle;
   }
 };

@@ -84,6 +84,7 @@ struct Grasp {
 struct GraspPlan {
   std::vector<Grasp> grasps;  ///< Best first.
   std::string no_grasp_reason;
+  int poses_examined = 0;     ///< Jaw poses looked at, all on antipodal contacts inside the stroke.
 };
 
 }  // namespace gfp
