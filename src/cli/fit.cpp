@@ -45,7 +45,10 @@ Result<void> make_folder(const std::string& folder) {
 }
 
 Result<FitJob> prepare(const FitArguments& arguments) {
-  FitJob job{{std::nullopt, arguments.depth_scale_m, arguments.axes}, {}, arguments.pipeline};
+  FitJob job;
+  job.input.depth_scale_m = arguments.depth_scale_m;
+  job.input.axes = arguments.axes;
+  job.pipeline = arguments.pipeline;
   if (auto valid = validate(job.pipeline); !valid) return tl::unexpected(as_argument(valid.error()));
   if (!job.pipeline.recognition.only_class.empty()) {
     const auto known = find_class(builtin_library(), job.pipeline.recognition.only_class);

@@ -116,11 +116,11 @@ std::string gltf_json(const TriangleMesh& mesh, const GlbBuffer& buffer) {
   json += R"("materials":[{"pbrMetallicRoughness":{"metallicFactor":0,"roughnessFactor":0.8}}],)";
   json += R"("meshes":[{"primitives":[{"attributes":{"POSITION":1,"NORMAL":2)" + std::string(coloured ? R"(,"COLOR_0":3)" : "") + R"(},"indices":0,"material":0}]}],)";
   json += "\"buffers\":[{\"byteLength\":" + std::to_string(buffer.bytes.size()) + "}],\"bufferViews\":[" +
-          view_json(0, buffer.positions, kElementArrayBuffer) + "," + view_json(buffer.positions, 12 * n, kArrayBuffer) + "," + view_json(buffer.normals, 12 * n, kArrayBuffer);
-  if (coloured) json += "," + view_json(buffer.colours, 4 * n, kArrayBuffer);
-  json += "],\"accessors\":[" + accessor_json(0, kUnsignedInt, 3 * mesh.triangles.size(), "SCALAR") + "," +
-          accessor_json(1, kFloat, n, "VEC3", ",\"min\":" + vector_json(buffer.low) + ",\"max\":" + vector_json(buffer.high)) + "," + accessor_json(2, kFloat, n, "VEC3");
-  if (coloured) json += "," + accessor_json(3, kUnsignedByte, n, "VEC4", ",\"normalized\":true");
+          view_json(0, buffer.positions, kElementArrayBuffer) + ',' + view_json(buffer.positions, 12 * n, kArrayBuffer) + ',' + view_json(buffer.normals, 12 * n, kArrayBuffer);
+  if (coloured) json += ',' + view_json(buffer.colours, 4 * n, kArrayBuffer);
+  json += "],\"accessors\":[" + accessor_json(0, kUnsignedInt, 3 * mesh.triangles.size(), "SCALAR") + ',' +
+          accessor_json(1, kFloat, n, "VEC3", ",\"min\":" + vector_json(buffer.low) + ",\"max\":" + vector_json(buffer.high)) + ',' + accessor_json(2, kFloat, n, "VEC3");
+  if (coloured) json += ',' + accessor_json(3, kUnsignedByte, n, "VEC4", ",\"normalized\":true");
   return json + "]}";
 }
 

@@ -32,8 +32,7 @@ class Search {
     const Vector3d along = (q - p) / width;
     const double use = std::max(cone_use(along, normal_p, friction_), cone_use(-along, normal_q, friction_));
     if (use > kMostUse || width < narrowest_m_) return;
-    if (width > widest_m_) ++found.too_wide;
-    else found.pairs.push_back({p, q, width, use});
+    (width > widest_m_ ? found.too_wide : found.pairs).push_back({p, q, width, use});
   }
 
   PairSearch found;

@@ -13,11 +13,14 @@ struct AntipodalPair {
   Eigen::Vector3d first, second;
   double width_m = 0;
   double cone_use = 0;  ///< Worse contact's tangent of (line, normal) over friction: 0 head-on, 1 about to slip.
+
+  /// Whether the point lies between the two planes through the contacts, square to their line.
+  bool spans(const Eigen::Vector3d& point) const { return (point - first).dot(second - first) > 0 && (point - second).dot(first - second) > 0; }
 };
 
 struct PairSearch {
   std::vector<AntipodalPair> pairs;  ///< Inside friction cones and stroke.
-  int too_wide = 0;                  ///< Would close, but not inside the stroke.
+  std::vector<AntipodalPair> too_wide;  ///< Would close, but not inside the stroke.
 };
 
 /// Antipodal pairs of a surface (ALGORITHM 5): the primitive's stored pairs, carried by face and barycentric coordinates and

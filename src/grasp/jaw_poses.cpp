@@ -37,8 +37,11 @@ JawPoseQueue::JawPoseQueue(const std::vector<AntipodalPair>& pairs, const Wrench
     const Vector3d steepest = down.norm() > 1e-3 ? Vector3d(down.normalized()) : orthonormal_basis(axis).first;
     const Vector3d sideways = axis.cross(steepest);
     fans_.push_back({axis, steepest, sideways});
-    const double base = 1.0 - pair.cone_use - 0.6 * (0.5 * (pair.first + pair.second) - scale.centre).norm() / scale.radius_m;
-    const Vector3d wish = 0.2 * from_camera - 0.8 * up;
+    const Vector3d off_centre = (0.5 * (pair.first + pair.second) - scale.centre) / scale.radius_m;
+    const bool body = pair.spans(scale.centre);
+    const double base = 1.0 - pair.cone_use - (body ? 0.6 * off_centre.norm() : 0.0);
+    Vector3d wish = 0.2 * from_camera - 0.8 * up;
+    if (!body) wish -= 0.6 * off_centre;
     const Eigen::Vector2d gain(wish.dot(steepest), wish.dot(sideways)), upwards(up.dot(steepest), up.dot(sideways));
     for (std::size_t k = 0; k < turns_.size(); ++k)
       if (upwards.dot(turns_[k]) <= kMostUpwards)

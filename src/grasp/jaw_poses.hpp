@@ -26,7 +26,8 @@ bool alike(const JawPose& a, const JawPose& b, double distance_m, double cos_ang
 /// Poses of all pairs in all approaches, best first, one at a time: few are ever looked at.
 ///
 /// `angles` approaches about each pair's closing axis, none that comes from below (more than 0.05 along `up`). Preferred:
-/// head-on contacts, from above, from the camera's side, near the centroid.
+/// head-on contacts, from above, from the camera's side; around the body near the centroid, of a rim or a handle at the end
+/// that the jaw reaches first (deeper in, the wall's taper lets it slip).
 class JawPoseQueue {
  public:
   JawPoseQueue(const std::vector<AntipodalPair>& pairs, const WrenchScale& scale, const Eigen::Vector3d& up, int angles);

@@ -21,7 +21,10 @@ using Eigen::Vector3d;
 constexpr double kTightClearance = 0.4;    // share of the opening clearance where space is tight
 constexpr double kShallowDepth = 0.35;     // share of the pad depth where a finger would meet the table or the palm the object
 constexpr double kMarginLimit = 0.2;       // metres: collision_margin_m looks no farther
-constexpr int kMostChecks = 200;
+constexpr int kBodyEffort = 360, kEdgeEffort = 360, kWiderEffort = 240;  // looks at the surroundings: the bulk of the time
+constexpr int kWholeCheck = 6;             // what closing the jaw in all depths costs, in such looks
+constexpr double kBesideTheBody = 0.6;     // what a grip is worth that has the centre of mass beside its pads, not between them
+constexpr double kWidestStroke = 0.5;      // metres: a jaw for the question whether the stroke alone is too small
 
 /// One pose that was closed on the fitted mesh.
 struct ClosedGrasp {
@@ -61,7 +64,7 @@ class Planner {
       : model_(model), gripper_(gripper), options_(options), mesh_(model.mesh_camera()), normals_(triangle_normals(mesh_)),
         bvh_(mesh_.vertices, mesh_.triangles), scale_(wrench_scale(mesh_)),
         up_(scene.has_support ? Vector3d(scene.T_camera_support.linear().col(2)) : Vector3d(-scale_.centre.normalized())),
-        surroundings_(scene, scale_.centre, scale_.radius_m + reach()) {
+        surroundings_(scene, scale_.centre, scale_.radius_m + reach()), stroke_m_(gripper.stroke_m) {
     for (const Triangle& triangle : mesh_.triangles) sigma_.push_back(sigma(triangle));
     extremes_ = extreme_points(mesh_.vertices);
   }
@@ -74,10 +77,13 @@ class Planner {
   }
   float sigma(const Triangle& triangle) const;
   bool observed(std::int32_t triangle) const;
+  void close_poses(const std::vector<AntipodalPair>& pairs, int effort, std::size_t enough, std::vector<ClosedGrasp>& closed, int& examined);
+  std::string why_none(const PairSearch& search);
   std::optional<ClosedGrasp> try_pose(const JawPose& pose);
   Obstruction close(ClosedGrasp& grasp, double depth_m);
   Obstruction obstruction(const ClosedGrasp& grasp, double sweep_m);
   bool hopeless(const JawPose& pose) const;
+  bool blocked(const JawPose& pose);
   double least_depth(const JawPose& pose) const;
   void value(ClosedGrasp& grasp, const std::vector<ShapeDraw>& draws);
   Grasp published(const ClosedGrasp& grasp) const;
@@ -92,8 +98,10 @@ class Planner {
   Vector3d up_;
   Surroundings surroundings_;
   std::vector<float> sigma_;  // per triangle
-  bool held_ = false, approach_blocked_ = false, slips_ = false;  // whether a pose held, why others did not: the reason code
+  double stroke_m_;
   std::vector<Vector3d> extremes_;
+  std::vector<ClosedGrasp> obstructed_;  // what was met on the way of these: for the reason code
+  bool slips_ = false;
 };
 
 float Planner::sigma(const Triangle& triangle) const {
@@ -121,6 +129,14 @@ bool Planner::hopeless(const JawPose& pose) const {
   });
 }
 
+/// Whether the shallowest grip meets table, neighbours or obstacles even with the jaw as little open as it may be.
+bool Planner::blocked(const JawPose& pose) {
+  ClosedGrasp grasp{pose, tcp_frame(pose, least_depth(pose)), pose.width_m + 2 * kTightClearance * options_.opening_clearance_m, {}, {}, {}};
+  if (!surroundings_.blocks(gripper_boxes(gripper_, grasp.T_camera_tcp, grasp.opening_m, options_.pregrasp_offset_m), options_.scene_clearance_m)) return false;
+  obstructed_.push_back(grasp);
+  return true;
+}
+
 std::optional<ClosedGrasp> Planner::try_pose(const JawPose& pose) {
   double last_m = -1;
   for (const double depth_m : {gripper_.pad_depth_m, kShallowDepth * gripper_.pad_depth_m, least_depth(pose)}) {
@@ -128,7 +144,7 @@ std::optional<ClosedGrasp> Planner::try_pose(const JawPose& pose) {
     last_m = depth_m;
     for (const double clearance_share : {1.0, kTightClearance}) {
       const double opening_m = pose.width_m + 2 * clearance_share * options_.opening_clearance_m;
-      if (opening_m > gripper_.stroke_m) continue;
+      if (opening_m > stroke_m_) continue;
       ClosedGrasp grasp{pose, tcp_frame(pose, depth_m), opening_m, {}, {}, {}};
       const Obstruction met = close(grasp, depth_m);
       if (met == Obstruction::kNone) return grasp;
@@ -162,7 +178,7 @@ Obstruction Planner::obstruction(const ClosedGrasp& grasp, double sweep_m) {
 Obstruction Planner::close(ClosedGrasp& grasp, double depth_m) {
   const Obstruction met = obstruction(grasp, options_.pregrasp_offset_m);
   if (met != Obstruction::kNone) {
-    if (!held_ && !approach_blocked_) approach_blocked_ = obstruction(grasp, 0) == Obstruction::kNone;
+    obstructed_.push_back(grasp);
     return met;
   }
   const auto touches = close_jaw(mesh_, bvh_, gripper_, grasp.T_camera_tcp, grasp.opening_m);
@@ -191,9 +207,13 @@ void Planner::value(ClosedGrasp& grasp, const std::vector<ShapeDraw>& draws) {
   // No jaw of this kind can do better than the torsional reach of its own pads.
   const double best_epsilon = gripper_.friction * gripper_.torsion_m / scale_.radius_m;
   const double seen = 0.5 * (observed(grasp.touches[0].triangle) + observed(grasp.touches[1].triangle));
-  const double merit = 0.35 * std::min(1.0, grasp.closure.epsilon_lcb / best_epsilon) + 0.35 * std::max(0.0, -grasp.pose.approach.dot(up_)) +
-                       0.15 * seen + 0.15 * std::min(1.0, grasp.margin_m / 0.02);
-  grasp.score = grasp.closure.p_force_closure * (0.4 + 0.6 * merit);
+  // The weight turns the object about the closing axis, where only the torsion of the pads holds it.
+  const Vector3d to_centre = scale_.centre - grasp.pose.middle;
+  const double lever_m = std::abs(to_centre.cross(up_).dot(grasp.pose.axis));
+  const double merit = 0.30 * std::min(1.0, grasp.closure.epsilon_lcb / best_epsilon) + 0.25 * std::max(0.0, -grasp.pose.approach.dot(up_)) +
+                       0.20 * (1 - std::min(1.0, lever_m / scale_.radius_m)) + 0.10 * seen + 0.15 * std::min(1.0, grasp.margin_m / 0.02);
+  const bool around_the_body = std::abs(to_centre.dot(grasp.pose.axis)) < 0.5 * grasp.pose.width_m;
+  grasp.score = grasp.closure.p_force_closure * (around_the_body ? 1.0 : kBesideTheBody) * (0.4 + 0.6 * merit);
 }
 
 Grasp Planner::published(const ClosedGrasp& closed) const {
@@ -229,28 +249,49 @@ Grasp Planner::published(const ClosedGrasp& closed) const {
   return grasp;
 }
 
+/// Adds the poses that hold, in the queue's order, until there are `enough` of them or the effort is spent.
+void Planner::close_poses(const std::vector<AntipodalPair>& pairs, int effort, std::size_t enough, std::vector<ClosedGrasp>& closed, int& examined) {
+  JawPoseQueue queue(pairs, scale_, up_, options_.approach_angles);
+  while (closed.size() < enough && effort > 0) {
+    const auto pose = queue.next();
+    if (!pose) return;
+    ++examined;
+    if (std::any_of(closed.begin(), closed.end(), [&](const ClosedGrasp& other) { return alike(*pose, other.pose, 0.010, 0.94); })) continue;
+    if (hopeless(*pose)) continue;
+    --effort;
+    if (blocked(*pose)) continue;
+    effort -= kWholeCheck;
+    if (auto grasp = try_pose(*pose)) closed.push_back(*grasp);
+  }
+}
+
+/// The reason code of a search in which no pose held. The stroke is to blame where the same gripper with a wider one would hold.
+std::string Planner::why_none(const PairSearch& search) {
+  const bool reached = std::any_of(obstructed_.begin(), obstructed_.end(), [&](const ClosedGrasp& grasp) { return obstruction(grasp, 0) == Obstruction::kNone; });
+  const std::string reason = slips_ ? "not_force_closure" : reached ? "unreachable" : "all_in_collision";
+  stroke_m_ = kWidestStroke;
+  std::vector<ClosedGrasp> wider;
+  int examined = 0;
+  close_poses(search.too_wide, kWiderEffort, 1, wider, examined);
+  return wider.empty() ? reason : "too_wide";
+}
+
 GraspPlan Planner::plan() {
   const double widest_m = gripper_.stroke_m - 2 * kTightClearance * options_.opening_clearance_m;
-  const PairSearch search = find_antipodal_pairs(model_, mesh_, normals_, bvh_, gripper_.friction, gripper_.min_width_m, widest_m, options_);
-  if (search.pairs.empty()) return {{}, search.too_wide > 0 ? "too_wide" : "no_antipodal_pair", 0};
+  PairSearch search = find_antipodal_pairs(model_, mesh_, normals_, bvh_, gripper_.friction, gripper_.min_width_m, widest_m, options_);
+  if (search.pairs.empty()) return {{}, search.too_wide.empty() ? "no_antipodal_pair" : "too_wide", 0};
 
+  // Grips around the body are looked for first, then those of a rim or a handle, so that neither crowds out the other.
+  const auto beside = std::stable_partition(search.pairs.begin(), search.pairs.end(), [&](const AntipodalPair& pair) { return pair.spans(scale_.centre); });
+  const std::vector<AntipodalPair> around(search.pairs.begin(), beside), edges(beside, search.pairs.end());
   const auto wanted = static_cast<std::size_t>(options_.max_grasps);
   const std::size_t enough = wanted + wanted / 2;  // some fall to their neighbours in the list, or to uncertainty
   std::vector<ClosedGrasp> closed;
   GraspPlan plan;
-  JawPoseQueue queue(search.pairs, scale_, up_, options_.approach_angles);
-  for (int checks = 0; closed.size() < enough && checks < kMostChecks;) {
-    const auto pose = queue.next();
-    if (!pose) break;
-    ++plan.poses_examined;
-    if (std::any_of(closed.begin(), closed.end(), [&](const ClosedGrasp& other) { return alike(*pose, other.pose, 0.010, 0.94); })) continue;
-    if (hopeless(*pose)) continue;
-    ++checks;
-    if (auto grasp = try_pose(*pose)) closed.push_back(*grasp);
-    held_ = !closed.empty();
-  }
+  close_poses(around, kBodyEffort, enough - enough / 4, closed, plan.poses_examined);
+  close_poses(edges, kEdgeEffort, enough, closed, plan.poses_examined);
   if (closed.empty()) {
-    plan.no_grasp_reason = slips_ ? "not_force_closure" : approach_blocked_ ? "unreachable" : "all_in_collision";
+    plan.no_grasp_reason = why_none(search);
     return plan;
   }
 

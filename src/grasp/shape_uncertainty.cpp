@@ -14,7 +14,7 @@ using Eigen::Vector3d;
 using Vector6d = Eigen::Matrix<double, 6, 1>;
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
 
-constexpr double kCorrelationLength = 0.030;  // metres over which a shape error keeps its sign
+constexpr double kLeastCorrelationLength = 0.030;  // metres over which a shape error keeps its sign; on large things, their radius
 constexpr double kFrictionSpread = 0.2;
 constexpr double kMostTilt = 0.7;             // radians: a tilt is a small error, not another shape
 
@@ -51,11 +51,13 @@ std::vector<ShapeDraw> draw_shapes(const FittedModel& model, int count, std::uin
 ClosureStatistics closure_statistics(const JawLine& jaw, const std::vector<ShapeDraw>& draws, const TriangleBvh& bvh,
                                      const std::vector<Vector3d>& normals_camera, const std::vector<float>& triangle_sigma_m,
                                      double friction, double torsion_m, const WrenchScale& scale, double min_epsilon) {
+  const double correlation_m = std::max(kLeastCorrelationLength, scale.radius_m);
   std::vector<double> epsilons;
   std::vector<Crossing> crossings;
   for (const ShapeDraw& draw : draws) {
     std::array<WrenchContact, 2> contacts;
     bool touched = true;
+    double travel_m = 0;  // of both pads together: past the opening, nothing is left between them
     for (std::size_t i = 0; i < 2 && touched; ++i) {
       const double side = i == 0 ? 1 : -1;
       const Vector3d start = draw.T_fit_true * (jaw.centre + 0.5 * side * jaw.opening_m * jaw.axis);
@@ -66,9 +68,11 @@ ClosureStatistics closure_statistics(const JawLine& jaw, const std::vector<Shape
       const auto triangle = static_cast<std::size_t>(crossings.front().triangle);
       const double sigma = triangle_sigma_m[triangle], outwards = draw.offset[static_cast<Eigen::Index>(i)] * sigma;
       const Vector3d normal = normals_camera[triangle];
-      touched = crossings.front().distance_m - outwards > 0;
+      const double until_touch_m = crossings.front().distance_m - outwards;
+      travel_m += until_touch_m;
+      touched = until_touch_m > 0 && travel_m < jaw.opening_m;  // false for a sigma that is no number
       const auto [t1, t2] = orthonormal_basis(normal);
-      const Eigen::Vector2d tilt = (sigma / kCorrelationLength * draw.slope[i]).cwiseMax(-kMostTilt).cwiseMin(kMostTilt);
+      const Eigen::Vector2d tilt = (sigma / correlation_m * draw.slope[i]).cwiseMax(-kMostTilt).cwiseMin(kMostTilt);
       contacts[i] = {start + crossings.front().distance_m * along + outwards * normal,
                      -(normal + tilt.x() * t1 + tilt.y() * t2).normalized(), friction * draw.friction_factor, torsion_m};
     }

@@ -10,10 +10,11 @@
 
 namespace gfp {
 
-/// Fills in the grasps of every object that changed or has something that changed within the gripper's reach; the others
-/// keep those they have. `views[i]` is objects[i]'s. `someone_left`: an object is gone, so all are planned anew.
+/// Fills in the grasps of every object that changed, has something within the gripper's reach that changed or left, or an
+/// obstacle where a grasp would go now; the others keep those they have. `views[i]` is objects[i]'s; what stands above the
+/// plane that the object itself stands on is in its way. `left`: objects as they were last seen that are gone.
 /// Parallel over objects; each one's milliseconds go into its ms["grasp"].
 void plan_scene_grasps(std::vector<SceneObject>& objects, const std::vector<const ObjectView*>& views, const Segments& segments,
-                       const OrganizedCloud& cloud, bool someone_left, const PipelineOptions& options);
+                       const OrganizedCloud& cloud, const std::vector<const SceneObject*>& left, const PipelineOptions& options);
 
 }  // namespace gfp

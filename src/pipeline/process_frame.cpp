@@ -120,13 +120,17 @@ Scene empty_scene(const Frame& frame, const Segments& segments, const PipelineOp
   return scene;
 }
 
-void add_objects(Scene& scene, std::vector<Work> work, const Segments& segments, const OrganizedCloud& cloud, const PipelineOptions& options) {
+void add_objects(Scene& scene, std::vector<Work> work, const Segments& segments, const OrganizedCloud& cloud, const SceneMemory& memory,
+                 const PipelineOptions& options) {
   std::vector<const ObjectView*> views;
+  std::vector<const SceneObject*> left;
+  for (const std::uint64_t id : scene.lost)
+    if (const Track* track = find_track(memory, id); track && track->object) left.push_back(track->object.get());
   for (Work& w : work) {
     views.push_back(w.view);
     scene.objects.push_back(std::move(w.object));
   }
-  plan_scene_grasps(scene.objects, views, segments, cloud, !scene.lost.empty(), options);
+  plan_scene_grasps(scene.objects, views, segments, cloud, left, options);
 }
 
 }  // namespace
@@ -142,7 +146,7 @@ PipelineResult process_frame(const Frame& frame, const SceneMemory& memory, cons
   Scene scene = empty_scene(frame, segments, options);
   scene.lost = lost_ids(memory, views, frame.sensor);
   auto work = estimate_objects(views, memory, library, options, scene.rejected, timings);
-  timings.measure("grasps", [&] { add_objects(scene, std::move(work), segments, cloud, options); });
+  timings.measure("grasps", [&] { add_objects(scene, std::move(work), segments, cloud, memory, options); });
   auto next = timings.measure("memory", [&] { return remember(scene, views, memory, options.memory); });
   scene.ms = timings.ms();
   return {std::move(scene), std::move(next)};

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <memory>
 
+#include "gfp/grasp/clear_of_points.hpp"
 #include "gfp/grasp/judge_grasp.hpp"
 #include "grasp/gripper_boxes.hpp"
 #include "grasp/shapes.hpp"
@@ -115,6 +116,15 @@ TEST(PlanGrasps, HoldsAWideCupByItsRim) {
   }
 }
 
+// A glass of 60 mm fits into the jaw, and so does its wall: around the body the weight cannot turn it.
+TEST(PlanGrasps, PrefersTheBodyToTheRimWhereItFits) {
+  const FittedModel model = test::fit_of(test::cup_mesh(0.030, 0.09, 0.003));
+  const auto grasps = plan_grasps(model, test::table_scene()).grasps;
+  ASSERT_FALSE(grasps.empty());
+  EXPECT_GT(grasps.front().width_m, 0.05);
+  for (std::size_t i = 1; i < grasps.size(); ++i) EXPECT_FALSE(grasps[i - 1].width_m < 0.01 && grasps[i].width_m > 0.05 && !grasps[i].abstain) << i;
+}
+
 // A mug: body too wide, inside closed by a lid; what is left is its handle.
 TEST(PlanGrasps, HoldsAWideBodyByItsHandle) {
   TriangleMesh mug = test::cylinder_mesh(0.06, 0.09);
@@ -195,6 +205,18 @@ TEST(PlanGrasps, AvoidsObstaclePoints) {
   EXPECT_EQ(judge_grasp(can.mesh_camera(), before[0], scene, Gripper{}).reason, "collision_scene");
 }
 
+TEST(ClearOfPoints, SeesAHandInTheWayButNoStrayPixel) {
+  const GraspPlan plan = plan_grasps(test::fit_of(test::cylinder_mesh(0.03, 0.1)), test::table_scene());
+  ASSERT_FALSE(plan.grasps.empty());
+  const Eigen::Vector3f inside = (plan.grasps.back().T_camera_tcp * Vector3d(-0.08, 0, 0)).cast<float>();  // in the palm of the last grasp
+  const Eigen::Vector3f behind = inside + Eigen::Vector3f(0, 0, 1);
+  std::vector<Eigen::Vector3f> points{inside, behind, behind, behind, behind};
+  EXPECT_TRUE(clear_of_points(plan, points, Gripper{}, PlanGraspsOptions{}));
+  points.insert(points.end(), 3, inside);
+  EXPECT_FALSE(clear_of_points(plan, points, Gripper{}, PlanGraspsOptions{}));
+  EXPECT_TRUE(clear_of_points({}, points, Gripper{}, PlanGraspsOptions{}));
+}
+
 TEST(PlanGrasps, WorksWithoutASupport) {
   const FittedModel can = test::fit_of(test::cylinder_mesh(0.03, 0.1));
   const auto grasps = plan_grasps(can, GraspScene{}).grasps;
@@ -205,6 +227,12 @@ TEST(PlanGrasps, WorksWithoutASupport) {
 // ---- every reason code ----------------------------------------------------------------------------------------------
 
 TEST(NoGraspReason, TooWide) { EXPECT_EQ(plan_grasps(test::fit_of(test::box_mesh({0.3, 0.4, 0.3})), test::table_scene()).no_grasp_reason, "too_wide"); }
+
+// Lid and bottom of the low can, 60 mm apart, fit into the jaw but not with the table there: what lacks is stroke.
+TEST(NoGraspReason, TooWideThoughSomePairsFit) {
+  for (const double height_m : {0.06, 0.12})
+    EXPECT_EQ(plan_grasps(test::fit_of(test::cylinder_mesh(0.055, height_m)), test::table_scene()).no_grasp_reason, "too_wide") << height_m;
+}
 
 // A cone with 90 degrees at its apex: no two of its sides face each other inside cones of 17 degrees, nor do side and base.
 TEST(NoGraspReason, NoAntipodalPair) {
@@ -268,6 +296,32 @@ TEST(ShapeUncertainty, LowersTheProbabilityAndTheBound) {
     last_bound = bound;
   }
   EXPECT_LT(last_p, 0.6) << "3 cm of uncertainty on a can of 6 cm: abstain";
+}
+
+// The front was measured to a millimetre; of the back less and less is known.
+TEST(ShapeUncertainty, OfAHiddenBackIsSaneAtAnySize) {
+  double last_p = 1.01;
+  for (const double sigma_m : {0.001, 0.005, 0.015, 0.05, 1.0, 1e30}) {
+    FittedModel model = test::fit_of(test::cylinder_mesh(0.033, 0.12, 48), 0.001);
+    for (std::size_t v = 0; v < model.vertices.size(); ++v)
+      if (model.vertices[v].y() > 0) {
+        model.states[v] = 0;
+        model.sigma_m[v] = static_cast<float>(sigma_m);
+      }
+    const auto grasps = plan_grasps(model, test::table_scene()).grasps;
+    ASSERT_FALSE(grasps.empty()) << sigma_m;
+    double p = 0;
+    for (const Grasp& grasp : grasps) {
+      EXPECT_GE(grasp.p_force_closure, 0);
+      EXPECT_LE(grasp.p_force_closure, 1);
+      EXPECT_TRUE(std::isfinite(grasp.epsilon_lcb) && std::isfinite(grasp.score)) << sigma_m;
+      p += grasp.p_force_closure / static_cast<double>(grasps.size());
+    }
+    EXPECT_LE(p, last_p + 0.05) << sigma_m;
+    last_p = p;
+    if (sigma_m <= 0.005) { EXPECT_FALSE(grasps.front().abstain) << "the jaw opens wider than that"; }
+    if (sigma_m >= 0.05) { EXPECT_TRUE(grasps.front().abstain) << sigma_m << " on a can of 66 mm"; }
+  }
 }
 
 TEST(ShapeUncertainty, OfThePoseCountsToo) {

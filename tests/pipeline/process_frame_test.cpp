@@ -73,6 +73,22 @@ TEST_F(ProcessFrame, GraspsKnowTheNeighbours) {
   EXPECT_EQ(process_frame(block_frame(close), {}, library).scene.objects[0].grasps.no_grasp_reason, "1 neighbours");
 }
 
+// They stand 0.7 m apart, more than a gripper reaches.
+TEST_F(ProcessFrame, GraspsStandWhenSomethingFarAwayLeaves) {
+  const PipelineResult both = process_frame(block_frame(far_apart), {}, library);
+  script().reset();
+  const PipelineResult one = process_frame(block_frame({far_apart[1]}), both.memory, library);
+  EXPECT_EQ(one.scene.objects[0].status, ObjectStatus::kUnchanged);
+  EXPECT_EQ(script().planned, 0);
+}
+
+TEST_F(ProcessFrame, GraspsAreNewWhenANeighbourLeaves) {
+  const std::vector<Block> close{{{40, 30, 60, 50}, 0.80}, {{64, 30, 84, 50}, 0.81}};
+  const PipelineResult both = process_frame(block_frame(close), {}, library);
+  const PipelineResult one = process_frame(block_frame({close[1]}), both.memory, library);
+  EXPECT_EQ(one.scene.objects[0].grasps.no_grasp_reason, "0 neighbours");
+}
+
 // Names of unknown methods are refused before any frame; should one arrive all the same, it costs the segments, not the frame.
 TEST_F(ProcessFrame, WhatCannotBeFittedIsRejectedWithAReason) {
   PipelineOptions options;

@@ -76,7 +76,8 @@ struct Grasp {
 
 /// Why an object has no grasp; empty where it has one:
 /// - `not_planned`: no grasps were asked for (or the work was shed);
-/// - `too_wide`: pairs of contacts oppose each other, all farther apart than the stroke less the clearance;
+/// - `too_wide`: a gripper of wider stroke would hold it, or all pairs of contacts that oppose each other are farther apart
+///   than the stroke less the clearance;
 /// - `no_antipodal_pair`: no two points oppose each other inside the friction cones;
 /// - `all_in_collision`: the gripper meets the object, the table or a neighbour in every pose;
 /// - `unreachable`: there are free poses, but something stands in every straight approach to them;

@@ -10,7 +10,7 @@ namespace gfp {
 
 struct PlanGraspsOptions {
   int max_grasps = 10;            ///< Published per object, best first.
-  int samples = 400;              ///< Fresh contact samples on the deformed mesh.
+  int samples = 250;              ///< Fresh contact samples on the deformed mesh.
   double min_epsilon = 1e-4;      ///< Below it a grasp is not force closed in practice.
   double pregrasp_offset_m = 0.10;       ///< Length of the straight approach.
   int approach_angles = 16;              ///< Approach directions about each closing axis.
@@ -48,7 +48,8 @@ struct GraspScene {
 /// Antipodal pairs (the primitive's own, carried by the deformation, and fresh ones) give jaw poses at `approach_angles`
 /// about each closing axis; none comes from below the horizontal of the support (without a support: from behind, as the
 /// camera sees it). The best are closed on the fitted mesh, checked along the straight approach against object, table,
-/// neighbours and obstacles, and valued under the shape's uncertainty. The list is diverse: no two grasps within 15 mm and
+/// neighbours and obstacles, and valued under the shape's uncertainty. Grips around the body come before those that have the
+/// centre of mass beside their pads (a rim), where they are as sure. The list is diverse: no two grasps within 15 mm and
 /// 25 degrees. Same model, scene, gripper, options: same bytes.
 /// Cost: 1-3 ms for 1200 triangles. Thread-safe: no shared state.
 GraspPlan plan_grasps(const FittedModel& model, const GraspScene& scene, const Gripper& gripper = {}, const PlanGraspsOptions& options = {});
