@@ -17,8 +17,8 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr int kMaxTangents = 150;
-constexpr int kSearchPoints = 250, kSearchTangents = 50, kSearchIterations = 12;
+constexpr int kMaxTangents = 80;
+constexpr int kSearchPoints = 150, kSearchTangents = 30, kSearchIterations = 10;
 constexpr double kWorthFreedom = 8.0;    ///< Nats by which a freer body (not round, leaning) must explain more.
 constexpr double kModelError = 0.002;    ///< Metres, 1 sigma: things are no superquadrics.
 constexpr double kFallbackExponent = 0.1;
@@ -30,7 +30,7 @@ struct Recovered {
   double sigma_m = 0.001;
   int iterations = 0;
   bool converged = false;
-  Eigen::Matrix<double, 6, 6> pose_information = Eigen::Matrix<double, 6, 6>::Zero();  ///< Support frame translation, body rotation.
+  Eigen::Matrix<double, 6, 6> pose_information = Eigen::Matrix<double, 6, 6>::Zero();  ///< Support frame, about the centre.
 };
 
 /// Smallest upright box about the points' shadows: yaw of its first side, half sides, centre.
@@ -104,17 +104,10 @@ std::vector<Superquadric> upright_starts(const Superquadric& box) {
   return starts;
 }
 
-SuperquadricData em_data(const SeenSurface& seen, const ObjectView& view, std::size_t points, std::size_t tangents) {
+SuperquadricData em_data(const SeenSurface& seen, const ObjectView& view) {
   SuperquadricData problem;
-  const auto thin = [](const auto& all, std::size_t count) {
-    auto some = all;
-    some.clear();
-    const std::size_t kept = std::min(count, all.size());
-    for (std::size_t k = 0; k < kept; ++k) some.push_back(all[k * all.size() / kept]);
-    return some;
-  };
-  problem.points = thin(seen.outer_points, points);
-  problem.tangents = thin(seen.tangents, tangents);
+  problem.points = seen.outer_points;
+  problem.tangents = seen.tangents;
   const Vector3d size = bounds(problem.points).size();
   problem.sigma_m = std::hypot(seen.sigma_m, kModelError);
   problem.tangent_sigma_m = std::hypot(0.5 * seen.pixel_m, kModelError);
@@ -136,7 +129,7 @@ Recovered recover_with_view(const SeenSurface& seen, const ObjectView& view, con
   using Freedom = SuperquadricFreedom;
   const Freedom upright{.rotation = Freedom::Rotation::kAboutVertical};
   const Freedom round{.rotation = Freedom::Rotation::kAboutVertical, .axes = Freedom::Axes::kRound, .epsilon2 = false};
-  const SuperquadricData coarse = em_data(seen, view, kSearchPoints, kSearchTangents);
+  const SuperquadricData fine = em_data(seen, view), coarse = thinned(fine, kSearchPoints, kSearchTangents);
   const EmOptions search{.max_iterations = kSearchIterations};
   std::optional<EmFit> best, best_round;
   for (const auto& start : upright_starts(box)) {
@@ -149,14 +142,16 @@ Recovered recover_with_view(const SeenSurface& seen, const ObjectView& view, con
     EmFit fit = maximise(coarse, shape, upright, search);
     if (fit.objective < best->objective - 1) best = fit;
   }
-  const SuperquadricData fine = em_data(seen, view, seen.outer_points.size(), seen.tangents.size());
   const EmOptions last{.max_iterations = options.max_iterations};
   EmFit fit = maximise(fine, best_round->superquadric, round, last);
   for (const auto& [start, freedom] : {std::pair(best->superquadric, upright), {best->superquadric, Freedom{}}}) {
     const EmFit freer = maximise(fine, start, freedom, last);
     if (freer.objective < fit.objective - kWorthFreedom) fit = freer;
   }
-  return {fit.superquadric, fit.sigma_m, fit.iterations, fit.converged, fit.information.topLeftCorner<6, 6>()};
+  // Rotations of EM are about the body's axes; the support's take their place.
+  Eigen::Matrix<double, 6, 6> turn = Eigen::Matrix<double, 6, 6>::Identity();
+  turn.bottomRightCorner<3, 3>() = fit.superquadric.pose.linear().transpose();
+  return {fit.superquadric, fit.sigma_m, fit.iterations, fit.converged, turn.transpose() * fit.information.topLeftCorner<6, 6>() * turn};
 }
 
 Recovered recover_from_points(const SeenSurface& seen, const Superquadric& box, const FitSuperquadricOptions& options) {
@@ -187,11 +182,11 @@ FittedModel fit_superquadric(const ObjectView& view, const FitSuperquadricOption
   const Superquadric box = box_about(seen, view);
   const Vector3d extent = bounds(seen.points).size();
   Recovered result{box, 0.01};
-  const bool enough = seen.points.size() >= 12 && extent.norm() > 0.004;
+  const bool enough = seen.outer_points.size() >= 12 && extent.norm() > 0.004;
   if (enough) result = options.algorithm == SuperquadricAlgorithm::kEmsView ? recover_with_view(seen, view, box, options) : recover_from_points(seen, box, options);
   if (!plausible(result.superquadric, box)) result = {box, 0.01};
   FittedModel model = volume_model(view, {"superquadric", superquadric_topology(), superquadric_vertices(result.superquadric),
-                                          horizontal_axis(result.superquadric), result.sigma_m});
+                                          horizontal_axis(result.superquadric), result.sigma_m, result.pose_information, result.superquadric.pose.translation()});
   model.iterations = result.iterations;
   model.converged = result.converged;
   return model;

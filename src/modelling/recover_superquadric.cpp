@@ -18,7 +18,8 @@ using Eigen::Vector3d;
 
 constexpr std::size_t kMinPoints = 12;      ///< One more than there are parameters.
 constexpr double kMinExtent = 0.001;        ///< Metres: the second largest extent of points that are not on a line.
-constexpr double kWorthSwitching = 1.0;     ///< Nats by which a look-alike must be better.
+constexpr std::size_t kSearchPoints = 200;
+constexpr double kWorthSwitching = 0.5;     ///< Nats by which a look-alike must be better.
 
 double weighted_rms(const SuperquadricData& problem, const EmFit& fit) {
   double squares = 0, total = 0;
@@ -84,13 +85,15 @@ Result<SuperquadricFit> recover_superquadric_ems(std::span<const Vector3d> point
   problem.sigma_m = options.noise_m;
   problem.range_m = 0.5 * box.size().norm();
   problem.limits = limits_for(box);
-  const EmOptions em{.max_iterations = options.max_iterations, .outlier_share = options.outlier_share};
-  EmFit best = maximise(problem, *start, {}, em);
+  // Where the surface is roughly, and which of its look-alikes it is, a few points tell; all of them polish it.
+  const SuperquadricData coarse = thinned(problem, kSearchPoints);
+  const EmOptions search{.max_iterations = options.max_iterations, .outlier_share = options.outlier_share};
+  EmFit best = maximise(coarse, *start, {}, search);
   int iterations = best.iterations;
-  for (bool switched = true; switched && iterations < 8 * options.max_iterations;) {
+  for (bool switched = true; switched && iterations < 6 * options.max_iterations;) {
     switched = false;
     for (const auto& shape : similar_shapes(best.superquadric)) {
-      const EmFit other = maximise(problem, shape, {}, em);
+      const EmFit other = maximise(coarse, shape, {}, search);
       iterations += other.iterations;
       if (!(other.objective < best.objective - kWorthSwitching)) continue;
       best = other;
@@ -98,6 +101,8 @@ Result<SuperquadricFit> recover_superquadric_ems(std::span<const Vector3d> point
       break;
     }
   }
+  best = maximise(problem, best.superquadric, {}, search);
+  iterations += best.iterations;
   return SuperquadricFit{best.superquadric, weighted_rms(problem, best), iterations, best.converged};
 }
 

@@ -213,7 +213,22 @@ NormalEquations normal_equations(const Superquadric& s, const Lengths& lengths, 
   return system;
 }
 
+template <class T>
+std::vector<T> evenly(const std::vector<T>& all, std::size_t count) {
+  if (all.size() <= count) return all;
+  std::vector<T> some;
+  for (std::size_t k = 0; k < count; ++k) some.push_back(all[k * all.size() / count]);
+  return some;
+}
+
 }  // namespace
+
+SuperquadricData thinned(const SuperquadricData& problem, std::size_t points, std::size_t tangents) {
+  SuperquadricData some = problem;
+  some.points = evenly(problem.points, points);
+  some.tangents = evenly(problem.tangents, tangents);
+  return some;
+}
 
 EmFit maximise(const SuperquadricData& problem, const Superquadric& start, const SuperquadricFreedom& freedom, const EmOptions& options) {
   const Mixture mixture(problem, options);

@@ -22,6 +22,9 @@ struct SuperquadricData {
   SuperquadricLimits limits;
 };
 
+/// The same with at most so many points and tangents, evenly taken.
+SuperquadricData thinned(const SuperquadricData& problem, std::size_t points, std::size_t tangents = 0);
+
 /// Which of the parameters are free.
 struct SuperquadricFreedom {
   enum class Rotation { kFree, kAboutVertical };  ///< Vertical: the frame's z axis.

@@ -84,12 +84,12 @@ Vector3d deepest_point(const Superquadric& s, const Ray& ray) {
   // Exact for an ellipsoid; the gauge is convex, so its slope along the line changes sign once, near here.
   const Vector3d unit_origin = origin.cwiseQuotient(s.half_axes_m), unit_along = along.cwiseQuotient(s.half_axes_m);
   const double guess = -unit_origin.dot(unit_along) / unit_along.squaredNorm();
-  double at = guess, width = 0.25 / unit_along.norm();
+  double at = guess, width = 0.1 / unit_along.norm();
   const auto slope = [&](double t) { return slope_along(s, origin + t * along, along); };
   double low = at, high = at, slope_low = slope(at), slope_high = slope_low;
   while (slope_low > 0 && width < 1e3) slope_low = slope(low -= width), width *= 2;
   while (slope_high < 0 && width < 1e3) slope_high = slope(high += width), width *= 2;
-  for (int k = 0; k < 8 && high - low > 1e-5; ++k) {  // 0.01 mm along the ray moves the distance by far less
+  for (int k = 0; k < 8 && high - low > 2e-4; ++k) {  // 0.2 mm along the ray moves the distance by far less
     // Secant steps crawl where a sharp edge makes the slope jump: alternate them with halving.
     const double secant = low + (high - low) * slope_low / (slope_low - slope_high);
     at = k % 2 == 0 && slope_high > slope_low ? std::clamp(secant, low, high) : 0.5 * (low + high);

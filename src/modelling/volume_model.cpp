@@ -1,8 +1,8 @@
 #include "modelling/volume_model.hpp"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "gfp/modelling/evaluate_fit.hpp"
 
@@ -13,21 +13,6 @@ using Eigen::Vector3d;
 
 constexpr double kInferredGrowth = 0.25;  ///< Metres of 1-sigma per metre from the nearest seen vertex.
 constexpr double kInferredBase = 0.003;   ///< Metres: what a guess errs by even beside a seen vertex.
-
-/// Marks vertices that face the camera and lie on the object's readings.
-void mark_seen(const ObjectView& view, const TriangleMesh& mesh_camera, std::vector<std::uint8_t>& states) {
-  const auto normals = vertex_normals(mesh_camera);
-  states.assign(mesh_camera.vertices.size(), 0);
-  for (std::size_t k = 0; k < states.size(); ++k) {
-    const Vector3d& p = mesh_camera.vertices[k];
-    if (!(p.z() > 0) || normals[k].dot(p) >= 0) continue;
-    const Eigen::Vector2d pixel = view.camera.project(p);
-    const int i = static_cast<int>(std::lround(pixel.x())) - view.tile.u0, j = static_cast<int>(std::lround(pixel.y())) - view.tile.v0;
-    if (!view.evidence.contains(i, j) || view.evidence.at(i, j) != Evidence::kObject) continue;
-    const double z = view.depth_m.at(i, j);
-    if (std::abs(z - p.z()) < 3 * view.noise.sigma_m(z) + 0.003) states[k] = kVertexObserved;
-  }
-}
 
 /// Seen: noise and the body's own misfit. Else it grows with the distance to the nearest seen vertex.
 std::vector<float> sigma_of(const std::vector<Vector3d>& vertices, const std::vector<std::uint8_t>& states, double surface_sigma_m) {
@@ -46,6 +31,24 @@ std::vector<float> sigma_of(const std::vector<Vector3d>& vertices, const std::ve
     sigma[k] = static_cast<float>(std::hypot(surface_sigma_m, kInferredBase + kInferredGrowth * std::sqrt(nearest)));
   }
   return sigma;
+}
+
+/// Covariance of x y z rx ry rz in the object frame. What the data leave open is held by priors of 50 mm and 1 rad.
+Eigen::Matrix<double, 6, 6> pose_covariance(const SupportedBody& body, const Transform& T_support_object) {
+  Eigen::Matrix<double, 6, 6> information = body.pose_information;
+  information.diagonal().head<3>().array() += 1 / (0.05 * 0.05);
+  information.diagonal().tail<3>().array() += 1.0;
+  const Eigen::Matrix3d R_object_support = T_support_object.linear().transpose();
+  // A turn about the centre also moves the base, where the object's origin is.
+  const Vector3d arm = T_support_object.translation() - body.centre_support;
+  Eigen::Matrix3d moves;
+  moves << 0, arm.z(), -arm.y(), -arm.z(), 0, arm.x(), arm.y(), -arm.x(), 0;
+  Eigen::Matrix<double, 6, 6> to_object = Eigen::Matrix<double, 6, 6>::Zero();
+  to_object.topLeftCorner<3, 3>() = R_object_support;
+  to_object.topRightCorner<3, 3>() = R_object_support * moves;
+  to_object.bottomRightCorner<3, 3>() = R_object_support;
+  const Eigen::Matrix<double, 6, 6> covariance = information.ldlt().solve(Eigen::Matrix<double, 6, 6>::Identity());
+  return to_object * covariance * to_object.transpose();
 }
 
 }  // namespace
@@ -67,10 +70,11 @@ FittedModel volume_model(const ObjectView& view, const SupportedBody& body) {
   for (const auto& v : body.vertices_support) model.vertices.push_back(T_object_support * v);
   model.T_camera_object = view.T_camera_support * Eigen::Translation3d(0, 0, lift) * T_support_object;
   model.size_m = bounds(model.vertices).size();
-  mark_seen(view, model.mesh_camera(), model.states);
+  const auto vertices_camera = model.mesh_camera().vertices;
+  mark_observed(view, vertices_camera, model.topology->triangles, model.states);
   model.sigma_m = sigma_of(model.vertices, model.states, body.surface_sigma_m);
-  model.yaw_low_rad = model.yaw_high_rad = 0;
-  model.evidence = evaluate_fit(view, model.mesh_camera().vertices, model.topology->triangles);
+  model.pose_covariance = pose_covariance(body, T_support_object);
+  model.evidence = evaluate_fit(view, vertices_camera, model.topology->triangles);
   return model;
 }
 
