@@ -10,6 +10,7 @@
 #include "segmentation/enclosed.hpp"
 #include "segmentation/outline.hpp"
 #include "segmentation/pixel_classes.hpp"
+#include "segmentation/reach_down.hpp"
 #include "segmentation/supports.hpp"
 
 namespace gfp {
@@ -174,7 +175,8 @@ Segments segment_cloud(const OrganizedCloud& cloud, const SegmentationOptions& o
   if (cloud.size() == 0) return result;
 
   const Supports supports = find_supports(cloud, options, up_camera, last);
-  const auto classes = classify_pixels(cloud, supports, options);
+  auto classes = classify_pixels(cloud, supports, options);
+  reach_down(cloud, supports, classes);
 
   const PixelRect readings = readings_rect(cloud, classes);
   std::vector<Candidate> taken;

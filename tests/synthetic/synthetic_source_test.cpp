@@ -80,7 +80,7 @@ TEST(SyntheticSource, EveryObjectIsInTheFirstPicture) {
     options.seed = seed;
     const FrameTruth truth = SyntheticSource(options).truth(0);
     for (int object = 0; object < options.table.objects; ++object)
-      EXPECT_GT(std::count(truth.labels.pixels.begin(), truth.labels.pixels.end(), object), 300) << "seed " << seed << ", object " << object;
+      EXPECT_GT(std::count(truth.labels.pixels.begin(), truth.labels.pixels.end(), object), 100) << "seed " << seed << ", object " << object;
   }
 }
 

@@ -1,0 +1,78 @@
+#include "segmentation/reach_down.hpp"
+
+#include "segmentation/pixel_classes.hpp"
+
+namespace gfp {
+namespace {
+
+constexpr int kHalfWindow = 2;       ///< Pixels: 5 x 5 readings err by about a third of one, for neighbours err together.
+constexpr int kLeastReadings = 6;
+constexpr double kBandShare = 0.4;   ///< Of the surface's band, which is three sigmas of one reading: as many of the mean.
+constexpr int kReach = 40;           ///< Pixels: a foot is no wider, but a warped table might be.
+
+class FootSearch {
+ public:
+  FootSearch(const OrganizedCloud& cloud, const Supports& supports, std::vector<std::uint8_t>& classes)
+      : cloud_(cloud), supports_(supports), classes_(classes), seen_(classes.size(), 0) {}
+
+  void run() {
+    std::vector<std::int32_t> ring;
+    for (std::int32_t i = 0; i < static_cast<std::int32_t>(classes_.size()); ++i)
+      if (at(i) >= kAbove) visit_neighbours(i, ring);
+    for (int step = 0; step < kReach && !ring.empty(); ++step) {
+      std::vector<std::int32_t> joined, next;
+      for (const std::int32_t pixel : ring)
+        if (stands_out(pixel)) joined.push_back(pixel);
+      for (const std::int32_t pixel : joined) at(pixel) = static_cast<std::uint8_t>(at(pixel) - kOnSupport + kAbove);
+      for (const std::int32_t pixel : joined) visit_neighbours(pixel, next);
+      ring = std::move(next);
+    }
+  }
+
+ private:
+  std::uint8_t& at(std::int32_t pixel) { return classes_[static_cast<std::size_t>(pixel)]; }
+
+  /// Neighbours on the support that this pixel is above join `ring`, each once.
+  void visit_neighbours(std::int32_t pixel, std::vector<std::int32_t>& ring) {
+    const int u = pixel % cloud_.width, v = pixel / cloud_.width;
+    const auto visit = [&](std::int32_t neighbour) {
+      if (at(neighbour) != at(pixel) - kAbove + kOnSupport || seen_[static_cast<std::size_t>(neighbour)]) return;
+      seen_[static_cast<std::size_t>(neighbour)] = 1;
+      ring.push_back(neighbour);
+    };
+    if (u > 0) visit(pixel - 1);
+    if (u + 1 < cloud_.width) visit(pixel + 1);
+    if (v > 0) visit(pixel - cloud_.width);
+    if (v + 1 < cloud_.height) visit(pixel + cloud_.width);
+  }
+
+  /// Over readings on the same support only: those above it would lift the mean of the plain table beside them.
+  bool stands_out(std::int32_t pixel) {
+    const std::uint8_t on = at(pixel);
+    const FlatSurface& surface = supports_.surfaces[static_cast<std::size_t>(on - kOnSupport)];
+    const int u = pixel % cloud_.width, v = pixel / cloud_.width;
+    double sum = 0;
+    int count = 0;
+    for (int y = std::max(0, v - kHalfWindow); y <= std::min(cloud_.height - 1, v + kHalfWindow); ++y) {
+      for (int x = std::max(0, u - kHalfWindow); x <= std::min(cloud_.width - 1, u + kHalfWindow); ++x) {
+        const std::int32_t other = y * cloud_.width + x;
+        if (at(other) != on) continue;
+        sum += surface.height(cloud_, other);
+        ++count;
+      }
+    }
+    const double z = static_cast<double>(cloud_.z[static_cast<std::size_t>(pixel)]);
+    return count >= kLeastReadings && sum > kBandShare * surface.band(z) * count;
+  }
+
+  const OrganizedCloud& cloud_;
+  const Supports& supports_;
+  std::vector<std::uint8_t>& classes_;
+  std::vector<std::uint8_t> seen_;
+};
+
+}  // namespace
+
+void reach_down(const OrganizedCloud& cloud, const Supports& supports, std::vector<std::uint8_t>& classes) { FootSearch(cloud, supports, classes).run(); }
+
+}  // namespace gfp
