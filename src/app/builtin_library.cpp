@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "wire/embedded_primitives.hpp"
+#include "app/embedded_primitives.hpp"
 #include "wire/primitive_file.hpp"
 
 namespace gfp {
@@ -26,18 +26,18 @@ const PrimitiveLibrary& builtin_library() {
 Result<PrimitiveLibrary> library_with(const std::filesystem::path& folder) {
   auto own = wire::read_primitive_folder(folder);
   if (!own) return tl::unexpected(own.error());
-  std::map<std::string, PrimitivePtr> by_class;
-  for (const PrimitivePtr& primitive : builtin_library().all()) by_class[primitive->class_name] = primitive;
-  for (auto& primitive : *own) by_class[primitive.class_name] = std::make_shared<const Primitive>(primitive);
+  std::map<std::string, PrimitivePtr> by_name;
+  for (const PrimitivePtr& primitive : builtin_library().all()) by_name[primitive->name] = primitive;
+  for (auto& primitive : *own) by_name[primitive.name] = std::make_shared<const Primitive>(primitive);
   std::vector<PrimitivePtr> primitives;
-  for (auto& [name, primitive] : by_class) primitives.push_back(std::move(primitive));
+  for (auto& [name, primitive] : by_name) primitives.push_back(std::move(primitive));
   return PrimitiveLibrary(std::move(primitives));
 }
 
 Result<PrimitivePtr> find_class(const PrimitiveLibrary& library, std::string_view class_name) {
   if (PrimitivePtr primitive = library.find(class_name)) return primitive;
   std::string known;
-  for (const PrimitivePtr& primitive : library.all()) known += (known.empty() ? "" : ", ") + primitive->class_name;
+  for (const PrimitivePtr& primitive : library.all()) known += (known.empty() ? "" : ", ") + primitive->name;
   return failure(ErrorCode::kNotFound, "class = " + std::string(class_name) + ", expected one of " + known);
 }
 

@@ -31,7 +31,7 @@ void list(const PrimitiveArguments& arguments) {
     if (arguments.json) all.push_back(primitive_json(*primitive));
     const Eigen::Vector3d size_mm = 1e3 * primitive->typical_size_m();
     if (!arguments.json)
-      std::cout << fmt::format("{:<14} {:>4.0f} x {:>4.0f} x {:>4.0f} mm  {:>5} points  {} modes  genus {}  {}\n", primitive->class_name, size_mm.x(), size_mm.y(),
+      std::cout << fmt::format("{:<14} {:>4.0f} x {:>4.0f} x {:>4.0f} mm  {:>5} points  {} modes  genus {}  {}\n", primitive->name, size_mm.x(), size_mm.y(),
                                size_mm.z(), primitive->size(), primitive->modes.size(), primitive->genus, primitive->hollow ? "hollow" : "solid");
   }
   if (arguments.json) std::cout << all.dump() << "\n";
@@ -62,10 +62,10 @@ void export_shape(const PrimitiveArguments& arguments, const Primitive& primitiv
   if (arguments.modes.size() > primitive.modes.size())
     return status.fail(std::cerr, "--modes", {ErrorCode::kInvalidArgument, fmt::format("{} coefficients, expected at most {}", arguments.modes.size(), primitive.modes.size())});
   const Eigen::Vector3d size_m = arguments.size_m.empty() ? primitive.typical_size_m() : Eigen::Vector3d(arguments.size_m[0], arguments.size_m[1], arguments.size_m[2]);
-  const std::string file = arguments.out.empty() ? primitive.class_name + ".ply" : arguments.out;
+  const std::string file = arguments.out.empty() ? primitive.name + ".ply" : arguments.out;
   const auto written = write_mesh(file, {shape(primitive, size_m, arguments.modes), primitive.topology->triangles}, type_colors(primitive));
   if (!written) return status.fail(std::cerr, file, written.error());
-  if (arguments.json) std::cout << nlohmann::json{{"class", primitive.class_name}, {"file", file}}.dump() << "\n";
+  if (arguments.json) std::cout << nlohmann::json{{"primitive", primitive.name}, {"file", file}}.dump() << "\n";
   else std::cout << file << "\n";
 }
 
@@ -84,14 +84,14 @@ void add_primitive_command(CLI::App& app, ExitStatus& status) {
   command.require_subcommand(1);
   const auto arguments = std::make_shared<PrimitiveArguments>();  // lives as long as the callbacks that read it
 
-  CLI::App& list_command = *command.add_subcommand("list", "One line a class");
+  CLI::App& list_command = *command.add_subcommand("list", "One line a primitive");
   list_command.callback([arguments] { list(*arguments); });
-  CLI::App& show_command = *command.add_subcommand("show", "Size, modes, typing, symmetry and stable poses of a class");
-  show_command.add_option("NAME", arguments->name, "Class or alias")->required();
+  CLI::App& show_command = *command.add_subcommand("show", "Size, modes, typing, symmetry and stable poses of a primitive");
+  show_command.add_option("NAME", arguments->name, "Name, class or alias")->required();
   show_command.add_option("--png", arguments->png, "Sheet of the mean shape and its modes at -2, 0 and +2 sigma");
   show_command.callback([arguments, &status] { with_primitive(*arguments, status, show); });
-  CLI::App& export_command = *command.add_subcommand("export", "Write a shape of the class as a mesh, object frame, metres");
-  export_command.add_option("NAME", arguments->name, "Class or alias")->required();
+  CLI::App& export_command = *command.add_subcommand("export", "Write a shape of the primitive as a mesh, object frame, metres");
+  export_command.add_option("NAME", arguments->name, "Name, class or alias")->required();
   export_command.add_option("--out", arguments->out, "File: .ply, .obj or .glb (default NAME.ply)");
   export_command.add_option("--size", arguments->size_m, "Reference size x,y,z in metres (default: the typical size)")->delimiter(',')->expected(3)->check(CLI::Range(1e-3, 10.0));
   export_command.add_option("--modes", arguments->modes, "Coefficients in standard deviations, as in 1,0,-2")->delimiter(',')->check(CLI::Range(-5.0, 5.0));

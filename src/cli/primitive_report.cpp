@@ -77,7 +77,8 @@ nlohmann::json primitive_json(const Primitive& primitive) {
   json poses = json::array();
   for (const StablePose& pose : primitive.stable_poses) poses.push_back({{"name", pose.name}, {"probability", pose.probability}});
   const Symmetry& symmetry = primitive.symmetry;
-  return {{"class", primitive.class_name},
+  return {{"name", primitive.name},
+          {"class", primitive.class_name},
           {"aliases", primitive.aliases},
           {"schema_version", Primitive::kSchemaVersion},
           {"vertices", primitive.size()},
@@ -105,6 +106,7 @@ nlohmann::json primitive_json(const Primitive& primitive) {
 void print_primitive(std::ostream& out, const Primitive& primitive) {
   const Eigen::Vector3d size_mm = 1e3 * primitive.typical_size_m(), spread = 100 * size_spread(primitive);
   const auto line = [&out](const char* name, const std::string& value) { out << fmt::format("{:<16}{}\n", name, value); };
+  line("name", primitive.name);
   line("class", primitive.class_name + (primitive.aliases.empty() ? "" : fmt::format(" (also {})", fmt::join(primitive.aliases, ", "))));
   line("points", fmt::format("{}: {} control, {} regular, {} set by hand; {} features", primitive.size(), count_controls(primitive),
                              primitive.size() - count_controls(primitive), count_manual(primitive), primitive.features));
@@ -132,7 +134,7 @@ Image<Rgb8> draw_primitive(const Primitive& primitive) {
     for (const double sigma : {-2.0, 2.0})
       radius_m = std::max(radius_m, 0.5 * bounds(shape(primitive, primitive.typical_size_m(), modes == 0 ? std::vector<double>{} : coefficients(k, sigma))).size().norm());
   const Eigen::Vector3d size_mm = 1e3 * primitive.typical_size_m();
-  rows.push_back({draw_shape(primitive, {}, radius_m, fmt::format("{} {:.0f} x {:.0f} x {:.0f} mm", primitive.class_name, size_mm.x(), size_mm.y(), size_mm.z()), false),
+  rows.push_back({draw_shape(primitive, {}, radius_m, fmt::format("{} {:.0f} x {:.0f} x {:.0f} mm", primitive.name, size_mm.x(), size_mm.y(), size_mm.z()), false),
                   draw_shape(primitive, {}, radius_m, fmt::format("{} control points", count_controls(primitive)), true)});
   for (std::size_t k = 0; k < modes; ++k) {
     rows.emplace_back();

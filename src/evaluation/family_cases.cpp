@@ -22,7 +22,7 @@ Result<ShapePtr> sample_member(const std::string& family, std::uint64_t index, c
   sampling.resolution = kResolution;
   sampling.free_form = options.free_form;
   FamilyInstance member = sample_family(family, random, sampling);
-  auto shape = make_truth_shape(family + "/" + std::to_string(index), family, std::move(member.mesh), options.truth);
+  auto shape = make_truth_shape(family + "/" + std::to_string(index), member.class_name, std::move(member.mesh), options.truth);
   if (!shape) return tl::unexpected(shape.error());
   return std::make_shared<const TruthShape>(std::move(*shape));
 }

@@ -78,7 +78,7 @@ class CaseRunner {
     result.method = method;
     result.metrics = measure_fit(shown.truth, fit.model, observation.points_camera);
     result.class_name = fit.model.class_name;
-    if (const PrimitivePtr known = library_.find(class_name)) result.class_correct = library_.find(fit.model.class_name) == known;
+    if (const PrimitivePtr known = library_.find(class_name)) result.class_correct = fit.model.class_name == known->class_name;
     result.cpu_ms = fit.cpu_ms;
     if (options_.grasps) {
       const PlanVerdict verdict = observation.view ? judge_plan(fit.model, *observation.view, shown, options_.pipeline) : PlanVerdict{};

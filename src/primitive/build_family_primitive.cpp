@@ -59,7 +59,8 @@ Primitive build_family_primitive(std::string_view name) {
     sizes_m.push_back(instance.size_m);
   }
   Primitive primitive;
-  primitive.class_name = name;
+  primitive.name = name;
+  primitive.class_name = spec->class_name;
   primitive.aliases = spec->aliases;
   primitive.symmetry = spec->symmetry;
   primitive.genus = spec->genus;

@@ -50,6 +50,7 @@ std::uint64_t topology_hash(const Topology& topology) {
 std::uint64_t content_hash(const Primitive& primitive) {
   Sha256 sha;
   sha.put_value(Primitive::kSchemaVersion);
+  put_text(sha, primitive.name);
   put_text(sha, primitive.class_name);
   for (const auto& alias : primitive.aliases) put_text(sha, alias);
   put_points(sha, primitive.mean);

@@ -47,11 +47,12 @@ FamilyShape make_can(ParameterDraw& draw) {
   return build_lathe(profile, kColumns, kNoRim, {width, width, height});
 }
 
-FamilyShape make_bottle(ParameterDraw& draw) {
+namespace {
+
+/// `flatness`: depth over width; `squareness`: of the body's section. Neck and cap are round.
+FamilyShape build_bottle(ParameterDraw& draw, double flatness, double squareness) {
   const double width = draw.log_range(0.038, 0.105), radius = 0.5 * width;
   const double height = width * draw.log_range(1.7, 4.3);
-  const double flatness = draw.range(0.55, 1.0);       // depth over width
-  const double squareness = draw.range(2.0, 3.2);      // of the body's section; neck and cap are round
   const double neck = radius * draw.log_range(0.26, 0.72) * (0.45 + 0.55 * flatness);
   const double shoulder = draw.range(0.46, 0.76), slope = draw.range(0.08, 0.24);
   const double neck_begin = std::min(shoulder + slope, 0.9), cap_height = height * mix(0.35, 1.0, draw.range(0, 1)) * (1 - neck_begin) * 0.62;
@@ -102,6 +103,15 @@ FamilyShape make_bottle(ParameterDraw& draw) {
     return Eigen::Vector3d(p.x(), p.y(), row.z);
   });
   return builder.finish({width, width * flatness, height});
+}
+
+}  // namespace
+
+FamilyShape make_bottle(ParameterDraw& draw) { return build_bottle(draw, 1.0, 2.0); }
+
+FamilyShape make_flat_bottle(ParameterDraw& draw) {
+  const double flatness = draw.range(0.45, 1.0), squareness = draw.range(2.0, 3.6);
+  return build_bottle(draw, flatness, squareness);
 }
 
 FamilyShape make_jar(ParameterDraw& draw) {

@@ -38,6 +38,7 @@ class ParameterDraw {
 /// One parametric class.
 struct FamilySpec {
   std::string_view name;
+  std::string_view class_name = name;
   FamilyShape (*make)(ParameterDraw& draw);
   std::vector<std::string> aliases = {};
   Symmetry symmetry;
@@ -69,6 +70,7 @@ FamilyShape make_bowl(ParameterDraw& draw);
 FamilyShape make_plate(ParameterDraw& draw);
 FamilyShape make_can(ParameterDraw& draw);
 FamilyShape make_bottle(ParameterDraw& draw);
+FamilyShape make_flat_bottle(ParameterDraw& draw);
 FamilyShape make_jar(ParameterDraw& draw);
 FamilyShape make_box(ParameterDraw& draw);
 FamilyShape make_pan(ParameterDraw& draw);
@@ -81,6 +83,7 @@ FamilyShape make_hammer(ParameterDraw& draw);
 FamilyShape make_drill(ParameterDraw& draw);
 FamilyShape make_clamp(ParameterDraw& draw);
 FamilyShape make_shoe(ParameterDraw& draw);
+FamilyShape make_slipper(ParameterDraw& draw);
 FamilyShape make_carton(ParameterDraw& draw);
 FamilyShape make_spray_bottle(ParameterDraw& draw);
 FamilyShape make_toy_car(ParameterDraw& draw);

@@ -89,6 +89,44 @@ FamilyShape make_shoe(ParameterDraw& draw) {
   return builder.finish({length, 2 * half_width * (1 + 0.5 * widening), std::max(top.z_front, top.z_back)});
 }
 
+/// A slide: a sole, toe towards +x, and a broad strap from side to side over it. One sees through below the strap: genus 1.
+FamilyShape make_slipper(ParameterDraw& draw) {
+  const double length = draw.log_range(0.2, 0.31), ball = length * draw.range(0.15, 0.2), heel = ball * draw.range(0.66, 0.9), waist = draw.range(0.78, 0.98);
+  const double sole = length * draw.range(0.05, 0.13), toe_sole = sole * draw.range(0.6, 1.05);
+  const double middle = draw.range(0.6, 0.74), strap = draw.range(0.24, 0.42), height = sole + length * draw.range(0.12, 0.26);
+  const double thickness = length * draw.range(0.014, 0.034), flare = draw.range(-0.15, 0.2), blunt = draw.range(4, 9);
+  const Spline width({0, 0.2, 0.45, 0.72, 1}, {heel, heel, waist * 0.5 * (heel + ball), ball, 0.9 * ball});
+
+  // The strap grows from rings kFirst to kLast of the sole, wherever the strap is.
+  constexpr int kSections = 20, kFirst = 9, kLast = 15, kColumns = 24;
+  const double from = middle - 0.5 * strap, to = std::min(middle + 0.5 * strap, 0.93);
+  std::vector<LoftSection> sections;
+  for (int i = 0; i <= kSections; ++i) {
+    const double u = i <= kFirst  ? mix(0.0, from, std::pow(static_cast<double>(i) / kFirst, 1.2))
+                     : i <= kLast ? mix(from, to, static_cast<double>(i - kFirst) / (kLast - kFirst))
+                                  : mix(to, 1.0, 1 - std::pow(1 - static_cast<double>(i - kLast) / (kSections - kLast), 1.3));
+    const double rounding = std::pow(1 - std::pow(std::abs(0.985 * (2 * u - 1)), blunt), 0.5);
+    sections.push_back(section_x((u - 0.5) * length, width(u) * rounding, 0, mix(sole, toe_sole, u), 4.5));
+  }
+  constexpr int kSide = 2;  // the column beside the top edge
+  const Window left{kFirst, kLast, kSide, 1}, right{kFirst, kLast, kColumns / 2 - kSide, 1};
+  SurfaceBuilder builder;
+  const auto rings = add_loft(builder, sections, kColumns, {left, right}, 0.002);
+  const double x = (0.5 * (from + to) - 0.5) * length, low = 0.8 * mix(sole, toe_sole, middle), reach = width(middle) + 0.6 * thickness;
+  constexpr int kArc = 13;
+  std::vector<TubeSection> arc;
+  for (int i = 0; i < kArc; ++i) {
+    const double angle = mix(0.12, std::numbers::pi - 0.12, i / (kArc - 1.0)), rise = height - 0.5 * thickness - low;
+    const Eigen::Vector3d travel = Eigen::Vector3d(0, -reach * std::sin(angle), rise * std::cos(angle)).normalized(), outward(-1, 0, 0);
+    const double half = 0.5 * (to - from) * length * (1 + flare * std::sin(angle)) * 0.96;
+    arc.push_back({{x, reach * std::cos(angle), low + rise * std::sin(angle)}, outward, travel.cross(outward), half, 0.5 * thickness, 5});
+  }
+  Ring end = SurfaceBuilder::window_loop(rings, right, true);
+  std::rotate(end.begin(), end.begin() + static_cast<std::ptrdiff_t>(end.size() / 2), end.end());  // from its heel end, like the strap's sections
+  builder.tube(SurfaceBuilder::window_loop(rings, left), arc, end, Part::kBody);
+  return builder.finish({length, 2 * ball, height});
+}
+
 /// A gable-top carton: a square column, a roof that folds to a ridge along y, an upright fin.
 FamilyShape make_carton(ParameterDraw& draw) {
   const double width = draw.log_range(0.055, 0.105), depth = width * draw.range(0.85, 1.15), height = width * draw.log_range(1.5, 3.2);

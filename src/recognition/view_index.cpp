@@ -5,109 +5,51 @@
 #include <cmath>
 #include <map>
 #include <mutex>
-#include <numbers>
 
-#include "gfp/core/camera_model.hpp"
-#include "gfp/core/random.hpp"
-#include "gfp/core/raster.hpp"
-#include "gfp/core/sensor_noise.hpp"
+#include "gfp/recognition/train_views.hpp"
 
 namespace gfp {
 namespace {
 
-using Eigen::Vector3d;
-
-constexpr int kViewsPerPose = 72;
 constexpr double kBandwidth = 1.6;  ///< Of the kernels, in pooled within-pose standard deviations of 28 dimensions.
-constexpr int kTileSide = 36;       ///< Cells of a training view's longer side.
 
-struct TrainingView {
-  std::vector<SeenPoint> points;
-  double azimuth_rad = 0;
-};
+using SquareMatrix = Eigen::Matrix<double, kDescriptorSize, kDescriptorSize>;
 
-std::vector<Vector3d> random_instance(const Primitive& primitive, Random& random) {
-  const Eigen::Matrix3d factor = primitive.log_size_covariance.llt().matrixL();
-  const Vector3d log_size = primitive.log_size_mean + factor * Vector3d(random.normal(), random.normal(), random.normal());
-  std::vector<double> modes(primitive.modes.size());
-  for (auto& b : modes) b = std::clamp(random.normal(), -2.0, 2.0);
-  return shape(primitive, log_size.array().exp().matrix(), modes);
+/// The primitive's own views where a program of this version wrote them.
+TrainingViews views_of(const Primitive& primitive) {
+  return primitive.training_views.descriptor_size == kDescriptorSize && !primitive.training_views.stable_pose.empty() ? primitive.training_views : train_views(primitive);
 }
 
-/// World = support frame; the object stands on z = 0 over the origin.
-TrainingView render_view(const Primitive& primitive, const StablePose& pose, Random& random) {
-  TriangleMesh mesh{random_instance(primitive, random), primitive.topology->triangles};
-  const Eigen::Matrix3d rotation = Eigen::AngleAxisd(random.uniform(0, 2 * std::numbers::pi), Vector3d::UnitZ()) * pose.R_support_object;
-  double lowest = 1e300;
-  for (auto& v : mesh.vertices) lowest = std::min(lowest, (v = rotation * v).z());
-  for (auto& v : mesh.vertices) v.z() -= lowest;
+ViewDescriptor descriptor_of(const TrainingViews& views, std::size_t view) {
+  return Eigen::Map<const Eigen::Matrix<float, kDescriptorSize, 1>>(views.descriptors.data() + view * kDescriptorSize).cast<double>();
+}
 
-  const double elevation = random.uniform(15, 70) * std::numbers::pi / 180, distance = random.uniform(0.6, 1.2);
-  const Vector3d target = bounds(mesh.vertices).centre();
-  Transform T_camera_support = Transform::Identity();  // looks along world +x: the azimuth is 0
-  const Vector3d forward(std::cos(elevation), 0, -std::sin(elevation)), right(0, -1, 0);
-  T_camera_support.linear().row(0) = right;
-  T_camera_support.linear().row(1) = forward.cross(right);
-  T_camera_support.linear().row(2) = forward;
-  T_camera_support.translation() = -T_camera_support.linear() * (target - distance * forward);
-  std::vector<Vector3d> vertices_camera;
-  for (const auto& v : mesh.vertices) vertices_camera.push_back(T_camera_support * v);
-
-  const CameraModel camera = default_kinect_camera();
-  PixelRect rect{1 << 20, 1 << 20, -(1 << 20), -(1 << 20)};
-  for (const auto& v : vertices_camera) {
-    const Eigen::Vector2d p = camera.project(v);
-    rect.u0 = std::min(rect.u0, static_cast<int>(p.x()));
-    rect.v0 = std::min(rect.v0, static_cast<int>(p.y()));
-    rect.u1 = std::max(rect.u1, static_cast<int>(p.x()) + 1);
-    rect.v1 = std::max(rect.v1, static_cast<int>(p.y()) + 1);
-  }
-  DepthTile tile;
-  tile.reset(rect, std::max(1, std::max(rect.width(), rect.height()) / kTileSide));
-  rasterise(vertices_camera, mesh.triangles, camera, tile, {.cull_back = true});
-
-  const auto normals = triangle_normals(mesh);
-  const Transform T_support_camera = T_camera_support.inverse();
-  TrainingView view;
-  for (int cell = 0; cell < tile.width * tile.height; ++cell) {
-    if (!tile.hit(cell)) continue;
-    const auto c = static_cast<std::size_t>(cell);
-    double z = static_cast<double>(tile.depth[c]);
-    z += SensorNoise{}.sigma_m(z) * random.normal();
-    const Vector3d point = T_support_camera * (camera.ray(rect.u0 + cell % tile.width * tile.step, rect.v0 + cell / tile.width * tile.step) * z);
-    if (point.z() < 0.008) continue;  // segmentation takes the lowest millimetres for the table
-    const Vector3d noise(random.normal(), random.normal(), random.normal());
-    view.points.push_back({point, (normals[static_cast<std::size_t>(tile.triangle[c])] + 0.08 * noise).normalized()});
-  }
-  return view;
+SquareMatrix scatter_of(const std::vector<ViewDescriptor>& views) {
+  ViewDescriptor mean = ViewDescriptor::Zero();
+  for (const auto& d : views) mean += d / static_cast<double>(views.size());
+  SquareMatrix scatter = SquareMatrix::Zero();
+  for (const auto& d : views) scatter += (d - mean) * (d - mean).transpose();
+  return scatter;
 }
 
 }  // namespace
 
 ViewIndex::ViewIndex(const PrimitiveLibrary& library) {
-  const Random root(0x6F7);
-  Eigen::Matrix<double, kDescriptorSize, kDescriptorSize> scatter = Eigen::Matrix<double, kDescriptorSize, kDescriptorSize>::Zero();
+  SquareMatrix scatter = SquareMatrix::Zero();
   double samples = 0;
   for (std::size_t p = 0; p < library.all().size(); ++p) {
-    const Primitive& primitive = *library.all()[p];
-    for (std::size_t s = 0; s < primitive.stable_poses.size(); ++s) {
-      Group group{static_cast<int>(p), static_cast<int>(s), {}};
-      Random random = root.fork(p * 64 + s);
-      for (int k = 0; k < kViewsPerPose; ++k) {
-        const TrainingView view = render_view(primitive, primitive.stable_poses[s], random);
-        if (!view.points.empty()) group.views.push_back(describe_view(view.points, view.azimuth_rad));
-      }
-      if (group.views.empty()) continue;
-      ViewDescriptor mean = ViewDescriptor::Zero();
-      for (const auto& d : group.views) mean += d / static_cast<double>(group.views.size());
-      for (const auto& d : group.views) scatter += (d - mean) * (d - mean).transpose();
+    const TrainingViews views = views_of(*library.all()[p]);
+    std::map<int, Group> by_pose;
+    for (std::size_t k = 0; k < views.stable_pose.size(); ++k) by_pose[views.stable_pose[k]].views.push_back(descriptor_of(views, k));
+    for (auto& [pose, group] : by_pose) {
+      scatter += scatter_of(group.views);
       samples += static_cast<double>(group.views.size()) - 1;
-      groups_.push_back(std::move(group));
+      groups_.push_back({static_cast<int>(p), pose, std::move(group.views)});
     }
   }
   scatter /= std::max(1.0, samples);
   scatter.diagonal().array() += 1e-3;
-  whitening_ = scatter.llt().matrixL().solve(Eigen::Matrix<double, kDescriptorSize, kDescriptorSize>::Identity());
+  whitening_ = scatter.llt().matrixL().solve(SquareMatrix::Identity());
   for (auto& group : groups_)
     for (auto& d : group.views) d = whitening_ * d;
 }

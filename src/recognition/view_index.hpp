@@ -9,8 +9,8 @@
 
 namespace gfp {
 
-/// Rendered training views of every class (ALGORITHM 4): instances drawn from the primitives' own size and shape priors, in their
-/// stable poses, seen from the upper hemisphere with sensor noise. Immutable; safe from any thread.
+/// The training views of all primitives, whitened: kernel densities of how each looks in each stable pose. Immutable; safe from any
+/// thread.
 class ViewIndex {
  public:
   explicit ViewIndex(const PrimitiveLibrary& library);
@@ -31,7 +31,7 @@ class ViewIndex {
   Eigen::Matrix<double, kDescriptorSize, kDescriptorSize> whitening_;
 };
 
-/// The index of a library, rendered on first use and kept for the process. Safe from any thread.
+/// The index of a library, made at first use and kept for the process. Safe from any thread.
 std::shared_ptr<const ViewIndex> view_index(const PrimitiveLibrary& library);
 
 }  // namespace gfp

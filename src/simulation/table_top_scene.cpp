@@ -42,14 +42,14 @@ struct Resting {
   Polygon footprint;  ///< With T_world_object's translation at x = y = 0.
 };
 
-Resting make_resting(const std::string& class_name, int index, const TableTopOptions& options, Random& random) {
+Resting make_resting(const std::string& family, int index, const TableTopOptions& options, Random& random) {
   SampleFamilyOptions family_options;
   family_options.free_form = options.free_form;
-  FamilyInstance instance = sample_family(class_name, random, family_options);
+  FamilyInstance instance = sample_family(family, random, family_options);
   Resting resting;
   PlacedMesh& object = resting.object;
-  object.name = class_name + (index < 10 ? "_0" : "_") + std::to_string(index);
-  object.class_name = class_name;
+  object.name = family + (index < 10 ? "_0" : "_") + std::to_string(index);
+  object.class_name = std::move(instance.class_name);
   object.mesh = std::move(instance.mesh);
   object.color = kPalette[static_cast<std::size_t>(index) % kPalette.size()];
   object.T_world_object.linear() = resting_orientation(object.mesh, random.uniform() < options.resting_otherwise, random);
@@ -146,8 +146,8 @@ VirtualScene table_top_scene(const TableTopOptions& options, std::uint64_t seed)
   Placer placer(options, random.fork(0));
   for (int i = 0; i < options.objects && !classes.empty(); ++i) {
     Random object_random = random.fork(static_cast<std::uint64_t>(i) + 1);
-    const std::string& class_name = classes[static_cast<std::size_t>(object_random.below(static_cast<int>(classes.size())))];
-    Resting resting = make_resting(class_name, i, options, object_random);
+    const std::string& family = classes[static_cast<std::size_t>(object_random.below(static_cast<int>(classes.size())))];
+    Resting resting = make_resting(family, i, options, object_random);
     resting.object.T_world_object.translation().head<2>() = placer.place(resting.footprint);
     scene.objects.push_back(std::move(resting.object));
   }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <Eigen/Cholesky>
+#include <algorithm>
 #include <cmath>
 
 #include "gfp/primitive/content_hash.hpp"
@@ -29,6 +30,7 @@ Outcome check_surface(const Primitive& primitive, const std::vector<Triangle>& t
 }
 
 Outcome check_shape(const Primitive& primitive) {
+  if (primitive.name.empty()) return corrupt("name is empty");
   if (primitive.class_name.empty()) return corrupt("class_name is empty");
   if (!all_finite(primitive.mean)) return corrupt("mean is not finite");
   for (std::size_t k = 0; k < primitive.modes.size(); ++k) {
@@ -73,6 +75,17 @@ Outcome check_contacts(const Primitive& primitive) {
   return {};
 }
 
+Outcome check_views(const Primitive& primitive) {
+  const TrainingViews& views = primitive.training_views;
+  if (views.descriptor_size < (views.stable_pose.empty() ? 0 : 1) || views.descriptors.size() != views.stable_pose.size() * static_cast<std::size_t>(views.descriptor_size))
+    return corrupt(fmt::format("{} descriptor values, expected {} views of {}", views.descriptors.size(), views.stable_pose.size(), views.descriptor_size));
+  for (const std::int32_t pose : views.stable_pose)
+    if (pose < 0 || pose >= static_cast<std::int32_t>(primitive.stable_poses.size()))
+      return corrupt(fmt::format("training view of stable pose {}, expected [0, {})", pose, primitive.stable_poses.size()));
+  if (!std::all_of(views.descriptors.begin(), views.descriptors.end(), [](float value) { return std::isfinite(value); })) return corrupt("descriptors are not finite");
+  return {};
+}
+
 Outcome check_hashes(const Primitive& primitive) {
   const std::uint64_t topology = topology_hash(*primitive.topology), content = content_hash(primitive);
   if (topology != primitive.topology->hash) return corrupt(fmt::format("topology hash = {:016x}, but the content's is {:016x}", primitive.topology->hash, topology));
@@ -83,7 +96,7 @@ Outcome check_hashes(const Primitive& primitive) {
 }  // namespace
 
 Result<void> check_primitive(const Primitive& primitive) {
-  for (const auto check : {check_shape, check_numbers, check_poses, check_contacts, check_hashes})
+  for (const auto check : {check_shape, check_numbers, check_poses, check_contacts, check_views, check_hashes})
     if (auto good = check(primitive); !good) return good;
   return {};
 }

@@ -48,6 +48,7 @@ Result<void> expect_at_most(const char* what, int count, int most) {
 
 void fill(const Primitive& primitive, v1::Primitive& message) {
   message.set_schema_version(Primitive::kSchemaVersion);
+  message.set_name(primitive.name);
   message.set_class_name(primitive.class_name);
   for (const auto& alias : primitive.aliases) message.add_aliases(alias);
   wire::fill(*primitive.topology, primitive.size(), *message.mutable_topology());
@@ -87,6 +88,13 @@ void fill(const Primitive& primitive, v1::Primitive& message) {
   message.set_source(primitive.provenance.source);
   message.set_licence(primitive.provenance.licence);
   message.set_members(primitive.provenance.members);
+  const TrainingViews& views = primitive.training_views;
+  if (!views.stable_pose.empty()) {
+    auto& trained = *message.mutable_training_views();
+    trained.set_descriptor_size(views.descriptor_size);
+    trained.mutable_stable_pose()->Add(views.stable_pose.begin(), views.stable_pose.end());
+    trained.mutable_descriptors()->Add(views.descriptors.begin(), views.descriptors.end());
+  }
   message.set_content_hash(primitive.content_hash);
 }
 
@@ -130,6 +138,7 @@ Result<Primitive> primitive_from(const v1::Primitive& message) {
   auto manual = manual_types_from(message.manual_types());
   if (!manual) return tl::unexpected(manual.error());
   Primitive primitive;
+  primitive.name = message.name();
   primitive.class_name = message.class_name();
   primitive.aliases.assign(message.aliases().begin(), message.aliases().end());
   primitive.mean = points_from(message.mean());
@@ -154,6 +163,8 @@ Result<Primitive> primitive_from(const v1::Primitive& message) {
   primitive.rest_edge_length = message.rest_edge_length();
   primitive.features = message.features();
   primitive.provenance = {message.source(), message.licence(), message.members()};
+  const auto& views = message.training_views();
+  primitive.training_views = {views.descriptor_size(), {views.stable_pose().begin(), views.stable_pose().end()}, {views.descriptors().begin(), views.descriptors().end()}};
   primitive.content_hash = message.content_hash();
   if (auto good = check_primitive(primitive); !good) return tl::unexpected(good.error());
   return primitive;
@@ -187,7 +198,7 @@ Result<std::vector<Primitive>> decode_primitives(std::span<const std::byte> byte
   std::vector<Primitive> primitives;
   for (const auto& message : set.primitives()) {
     auto primitive = primitive_from(message);
-    if (!primitive) return tl::unexpected(Error{primitive.error().code, "primitive '" + message.class_name().substr(0, 80) + "': " + primitive.error().what});
+    if (!primitive) return tl::unexpected(Error{primitive.error().code, "primitive '" + message.name().substr(0, 80) + "': " + primitive.error().what});
     primitives.push_back(std::move(*primitive));
   }
   return primitives;

@@ -167,17 +167,23 @@ TEST(Primitive, ShapeIsMeanPlusModesTimesSize) {
 }
 
 TEST(PrimitiveLibrary, FindsByNameAndAlias) {
-  const auto make = [](const char* name, std::vector<std::string> aliases) {
+  const auto make = [](const char* name, const char* class_name, std::vector<std::string> aliases) {
     Primitive primitive;
-    primitive.class_name = name;
+    primitive.name = name;
+    primitive.class_name = class_name;
     primitive.aliases = std::move(aliases);
     return std::make_shared<const Primitive>(primitive);
   };
-  const PrimitiveLibrary library({make("jug", {"pitcher"}), make("cup", {"glass"})});
-  EXPECT_EQ(library.all()[0]->class_name, "cup");
+  const PrimitiveLibrary library({make("shoe", "shoe", {}), make("jug", "jug", {"pitcher"}), make("cup", "cup", {"glass"}), make("boot", "shoe", {"wellington"})});
+  EXPECT_EQ(library.all()[0]->name, "boot");
   EXPECT_EQ(library.find("pitcher")->class_name, "jug");
   EXPECT_EQ(library.find("glass")->class_name, "cup");
+  EXPECT_EQ(library.find("boot")->name, "boot");
   EXPECT_EQ(library.find("spaceship"), nullptr);
+  EXPECT_EQ(library.of_class("shoe").size(), 2U);
+  EXPECT_EQ(library.of_class("boot").size(), 1U);
+  EXPECT_EQ(library.of_class("wellington").front()->name, "boot");
+  EXPECT_TRUE(library.of_class("spaceship").empty());
 }
 
 TEST(Families, HaveNamesAndAliasesOnce) {

@@ -25,7 +25,7 @@ inline PrimitivePtr finished(Primitive primitive, const TriangleMesh& unit) {
 /// Upright can of radius about 40 mm and height about 120 mm; mode 0 makes it conical, mode 1 waisted.
 inline PrimitivePtr can_primitive() {
   Primitive primitive;
-  primitive.class_name = "can";
+  primitive.name = primitive.class_name = "can";
   const TriangleMesh unit = cylinder(0.5, 1.0, 24, 10);
   for (const auto& profile : {+[](double z) { return 0.1 * (2 * z - 1); }, +[](double z) { return 0.1 * std::cos(2 * std::numbers::pi * z); }}) {
     std::vector<Eigen::Vector3d> mode;
@@ -69,7 +69,7 @@ inline PrimitivePtr box_primitive() {
       quad(vertex(kSide, i, j), vertex(kSide, i + 1, j), vertex(kSide, i + 1, j + 1), vertex(kSide, i, j + 1));
     }
   Primitive primitive;
-  primitive.class_name = "box";
+  primitive.name = primitive.class_name = "box";
   primitive.log_size_mean = Eigen::Vector3d(0.09, 0.09, 0.12).array().log().matrix();
   primitive.log_size_covariance = 0.25 * Eigen::Matrix3d::Identity();
   primitive.symmetry = {.revolution = false, .cyclic = 2, .mirror_x = true, .mirror_y = true, .flip_z = true};

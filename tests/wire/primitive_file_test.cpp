@@ -9,7 +9,7 @@
 #include "gfp/primitive/families.hpp"
 #include "gfp/v1/primitive.pb.h"
 #include "wire/bounded_parse.hpp"
-#include "wire/embedded_primitives.hpp"
+#include "app/embedded_primitives.hpp"
 
 namespace gfp::wire {
 namespace {
@@ -72,6 +72,8 @@ TEST(PrimitiveFile, RefusesWhatDoesNotFit) {
   corrupt([](v1::Primitive& m) { m.clear_topology(); });
   corrupt([](v1::Primitive& m) { m.mutable_topology()->mutable_triangles()->resize(m.topology().triangles().size() - 12); });  // a hole
   corrupt([](v1::Primitive& m) { m.set_class_name(""); });
+  corrupt([](v1::Primitive& m) { m.set_name(""); });
+  corrupt([](v1::Primitive& m) { m.mutable_training_views()->add_stable_pose(0); });
   EXPECT_EQ(error_after([](v1::Primitive& m) { m.set_schema_version(2); }), ErrorCode::kUnsupported);
   EXPECT_EQ(error_after([](v1::Primitive& m) { m.mutable_topology()->set_vertex_count(4'000'000'000U); }), ErrorCode::kTooLarge);
   EXPECT_EQ(error_after([](v1::Primitive& m) { for (int i = 0; i < 100; ++i) m.add_modes(); }), ErrorCode::kTooLarge);
@@ -115,9 +117,10 @@ TEST(EmbeddedPrimitives, AreAllFamilies) {
   const auto primitives = decode_primitives(embedded_primitives());
   ASSERT_TRUE(primitives) << primitives.error().what;
   std::vector<std::string> names;
-  for (const auto& primitive : *primitives) names.push_back(primitive.class_name);
+  for (const auto& primitive : *primitives) names.push_back(primitive.name);
   EXPECT_EQ(names, family_names());
   EXPECT_EQ((*primitives)[0].content_hash, build_family_primitive(names[0]).content_hash);
+  for (const auto& primitive : *primitives) EXPECT_FALSE(primitive.training_views.stable_pose.empty()) << primitive.name;
 }
 
 }  // namespace

@@ -25,6 +25,7 @@ struct SampleFamilyOptions {
   double free_form = 0.0;    ///< Amplitude of a smooth random displacement, share of the size: the test is then not the model.
 };
 
+/// Names of all families, sorted. A class may have several: round and flat bottles.
 std::vector<std::string> family_names();
 FamilyInstance sample_family(std::string_view name, Random& random, const SampleFamilyOptions& options = {});
 

@@ -55,15 +55,23 @@ struct Provenance {
   int members = 0;      ///< Shapes averaged.
 };
 
-/// The Generic Fitted Primitive (P6-P8): one class's mean shape, how it varies, and how it rests.
+/// How a primitive looks: descriptors of rendered views (recognition/train_views.hpp), row after row.
+struct TrainingViews {
+  int descriptor_size = 0;
+  std::vector<std::int32_t> stable_pose;  ///< Per view.
+  std::vector<float> descriptors;         ///< Views x descriptor_size.
+};
+
+/// The Generic Fitted Primitive (P6-P8): a class's mean shape, how it varies, and how it rests.
 ///
 /// Canonical frame: z up, origin at the base centre, divided per axis by the reference size, so that
 ///     p_object = size_m * (mean + sum_k b_k modes[k])   (component-wise product, metres, b ~ N(0, I)).
 struct Primitive {
   static constexpr std::uint32_t kSchemaVersion = 1;
 
-  std::string class_name;
-  std::vector<std::string> aliases;                    ///< Other names users give the class (glass = cup).
+  std::string name;                                    ///< Unique in a library; the class's own name where one shape suffices.
+  std::string class_name;                              ///< Round and flat bottles are primitives of one class.
+  std::vector<std::string> aliases;                    ///< Other names users give it (glass = cup).
   std::vector<Eigen::Vector3d> mean;                   ///< N canonical points (M).
   std::shared_ptr<const Topology> topology;            ///< A and W.
   std::vector<std::vector<Eigen::Vector3d>> modes;     ///< K x N canonical displacements for one standard deviation, strongest first.
@@ -80,7 +88,8 @@ struct Primitive {
   double rest_edge_length = 0;                         ///< Mean edge length of the mean shape at the mean size, metres.
   int features = 0;                                    ///< P6 "number of features": sharp corners and curvature extremes found by typing.
   Provenance provenance;
-  std::uint64_t content_hash = 0;                      ///< First 8 bytes of a SHA-256 of the canonical serialisation.
+  TrainingViews training_views;                        ///< Derived from the rest; empty: recognition renders them at first use.
+  std::uint64_t content_hash = 0;                      ///< First 8 bytes of a SHA-256 over the rest but `training_views`.
 
   Eigen::Vector3d typical_size_m() const { return log_size_mean.array().exp().matrix(); }
   std::size_t size() const { return mean.size(); }

@@ -9,15 +9,17 @@
 
 namespace gfp {
 
-/// The primitives a process works with, one a class, sorted by class name. Immutable once built; safe from any thread.
+/// The primitives a process works with, sorted by name; a class may have several (round and flat bottles). Immutable once built; safe from any thread.
 class PrimitiveLibrary {
  public:
   PrimitiveLibrary() = default;
   explicit PrimitiveLibrary(std::vector<PrimitivePtr> primitives);
 
   const std::vector<PrimitivePtr>& all() const { return primitives_; }
-  /// By class name or alias; nullptr where there is none.
-  PrimitivePtr find(std::string_view class_name) const;
+  /// By name, else the first of that class or alias; nullptr where there is none.
+  PrimitivePtr find(std::string_view name) const;
+  /// All of a class; where there is no such class, all of that name or alias (`boot`: of the shoes, only those). May be empty.
+  std::vector<PrimitivePtr> of_class(std::string_view name) const;
 
  private:
   std::vector<PrimitivePtr> primitives_;

@@ -1,5 +1,5 @@
 // The generated PrimitiveSet as bytes of the program, so that it runs from anywhere.
-#include "wire/embedded_primitives.hpp"
+#include "app/embedded_primitives.hpp"
 
 __asm__(
     ".section .rodata\n"

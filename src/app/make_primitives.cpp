@@ -4,6 +4,7 @@
 #include <iostream>
 
 #include "gfp/primitive/families.hpp"
+#include "gfp/recognition/train_views.hpp"
 #include "wire/primitive_file.hpp"
 
 int main(int argc, char** argv) {
@@ -12,7 +13,10 @@ int main(int argc, char** argv) {
     return 64;
   }
   std::vector<gfp::Primitive> primitives;
-  for (const auto& name : gfp::family_names()) primitives.push_back(gfp::build_family_primitive(name));
+  for (const auto& name : gfp::family_names()) {
+    primitives.push_back(gfp::build_family_primitive(name));
+    primitives.back().training_views = gfp::train_views(primitives.back());
+  }
   const std::string bytes = gfp::wire::encode_primitives(primitives);
   std::ofstream file(argv[1], std::ios::binary);
   file.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
