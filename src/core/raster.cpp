@@ -18,24 +18,30 @@ struct ImagePoint {
 /// value(i, j) = a i + b j + c, zero on the line through p and q, positive to its left (image y is down: orientation is normalised later).
 struct Line {
   double a, b, c;
+  double at(int i, int j) const { return a * i + b * j + c; }
 };
 
 Line line_through(const ImagePoint& p, const ImagePoint& q) {
   return {p.j - q.j, q.i - p.i, p.i * q.j - p.j * q.i};
 }
 
+/// Of a number in [0, 2^31): without SSE 4.1, std::ceil is a call.
+int round_up(double value) {
+  const int below = static_cast<int>(value);
+  return below + (below < value ? 1 : 0);
+}
+
 void draw(const ImagePoint (&p)[3], std::int32_t index, DepthTile& tile) {
+  const double low_i = std::max(0.0, std::min({p[0].i, p[1].i, p[2].i})), high_i = std::min(tile.width - 1.0, std::max({p[0].i, p[1].i, p[2].i}));
+  const double low_j = std::max(0.0, std::min({p[0].j, p[1].j, p[2].j})), high_j = std::min(tile.height - 1.0, std::max({p[0].j, p[1].j, p[2].j}));
+  if (!(low_i <= high_i && low_j <= high_j)) return;
+  const int i0 = round_up(low_i), i1 = static_cast<int>(high_i), j0 = round_up(low_j), j1 = static_cast<int>(high_j);
+  if (i0 > i1 || j0 > j1) return;
+
   double twice_area = (p[1].i - p[0].i) * (p[2].j - p[0].j) - (p[2].i - p[0].i) * (p[1].j - p[0].j);
   if (std::abs(twice_area) < 1e-12) return;  // seen edge-on
   const double sign = twice_area > 0 ? 1.0 : -1.0;
   twice_area = std::abs(twice_area);
-
-  const int i0 = std::max(0, static_cast<int>(std::ceil(std::min({p[0].i, p[1].i, p[2].i}))));
-  const int i1 = std::min(tile.width - 1, static_cast<int>(std::floor(std::max({p[0].i, p[1].i, p[2].i}))));
-  const int j0 = std::max(0, static_cast<int>(std::ceil(std::min({p[0].j, p[1].j, p[2].j}))));
-  const int j1 = std::min(tile.height - 1, static_cast<int>(std::floor(std::max({p[0].j, p[1].j, p[2].j}))));
-  if (i0 > i1 || j0 > j1) return;
-
   Line edges[3] = {line_through(p[1], p[2]), line_through(p[2], p[0]), line_through(p[0], p[1])};
   Line inverse_depth{0, 0, 0};
   for (int k = 0; k < 3; ++k) {
@@ -46,6 +52,22 @@ void draw(const ImagePoint (&p)[3], std::int32_t index, DepthTile& tile) {
     inverse_depth.c += weight * edges[k].c;
   }
   const double slack = -1e-9 * twice_area;  // shared edges belong to both triangles: no cracks
+  const auto put = [&](int i, int j) {
+    const double inverse = inverse_depth.a * i + inverse_depth.b * j + inverse_depth.c;
+    const auto depth = static_cast<float>(1.0 / inverse);
+    const std::size_t cell = static_cast<std::size_t>(j) * static_cast<std::size_t>(tile.width) + static_cast<std::size_t>(i);
+    if (depth < tile.depth[cell] && depth > 0) {
+      tile.depth[cell] = depth;
+      tile.triangle[cell] = index;
+    }
+  };
+  constexpr int kFewColumns = 4;  // there, testing each pixel costs less than the divisions that clip a run
+  if (i1 - i0 < kFewColumns) {
+    for (int j = j0; j <= j1; ++j)
+      for (int i = i0; i <= i1; ++i)
+        if (std::min({edges[0].at(i, j), edges[1].at(i, j), edges[2].at(i, j)}) >= slack) put(i, j);
+    return;
+  }
   for (int j = j0; j <= j1; ++j) {
     // The columns where all three edge functions are non-negative form one run; clip it instead of testing each pixel.
     double low = i0, high = i1;
@@ -55,17 +77,9 @@ void draw(const ImagePoint (&p)[3], std::int32_t index, DepthTile& tile) {
       else if (e.a < 0) high = std::min(high, -rest / e.a);
       else if (rest < 0) high = -1;
     }
-    const int first = static_cast<int>(std::ceil(low)), last = static_cast<int>(std::floor(high));
-    const std::size_t row = static_cast<std::size_t>(j) * static_cast<std::size_t>(tile.width);
-    for (int i = first; i <= last; ++i) {
-      const double inverse = inverse_depth.a * i + inverse_depth.b * j + inverse_depth.c;
-      const auto depth = static_cast<float>(1.0 / inverse);
-      const std::size_t cell = row + static_cast<std::size_t>(i);
-      if (depth < tile.depth[cell] && depth > 0) {
-        tile.depth[cell] = depth;
-        tile.triangle[cell] = index;
-      }
-    }
+    if (low > high) continue;
+    const int first = round_up(low), last = static_cast<int>(high);
+    for (int i = first; i <= last; ++i) put(i, j);
   }
 }
 

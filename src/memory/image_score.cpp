@@ -7,7 +7,6 @@ namespace gfp {
 namespace {
 
 constexpr double kCap = 4.5;                   ///< Negative log likelihood of a pixel that is not explained: 3 sigma.
-constexpr double kModelSigma = 0.003;          ///< What even a good model does not follow, metres.
 constexpr double kFreeSpaceTolerance = 0.017;  ///< Edges waver and mixed pixels float by this much along the ray, metres.
 constexpr double kSpillCost = 1.5 * kCap;      ///< A model in seen free space is worse than a bare pixel.
 constexpr double kUnknownCost = 0.1 * kCap;    ///< Where nothing is known a model may be, but has no reason to spread.
@@ -20,7 +19,7 @@ bool in_free_space(const ObservedTile& observed, const DepthTile& rendered, int 
   return observed.depth[at(cell)] > static_cast<double>(rendered.depth[at(cell)]) + kFreeSpaceTolerance;
 }
 
-ImageScore image_score(const ObservedTile& observed, const DepthTile& rendered) {
+ImageScore image_score(const ObservedTile& observed, const DepthTile& rendered, double model_sigma_m) {
   ImageScore score;
   double cost = 0, squares = 0;
   int explained = 0, near = 0, visible = 0, violating = 0, covered = 0;
@@ -33,7 +32,7 @@ ImageScore image_score(const ObservedTile& observed, const DepthTile& rendered) 
     ++visible;
     const double distance = plane_distance(observed, rendered, cell);
     const double sensor_sigma = static_cast<double>(observed.sigma_m[at(cell)]);
-    const double variance = sensor_sigma * sensor_sigma + kModelSigma * kModelSigma;
+    const double variance = sensor_sigma * sensor_sigma + model_sigma_m * model_sigma_m;
     cost += std::min(0.5 * distance * distance / variance, kCap);
     explained += distance * distance < 9 * variance ? 1 : 0;
     if (std::abs(distance) < 3 * sensor_sigma + 0.010) {

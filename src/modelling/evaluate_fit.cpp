@@ -12,7 +12,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr int kEvidenceCells = 2500;      ///< Object cells on which a fit is judged.
+constexpr int kEvidenceCells = 1600;      ///< Object cells on which a fit is judged.
 constexpr double kSelfHiddenM = 0.004;    ///< A vertex this far behind the rendered surface is hidden by it.
 constexpr double kOnDataSigmas = 3;       ///< Observed: data within so many sigmas of noise plus 3 mm.
 
@@ -67,33 +67,7 @@ double depth_inside(const std::vector<Eigen::Vector2d>& outline, const Eigen::Ve
   return depth;
 }
 
-}  // namespace
-
-FitEvidence evaluate_fit(const ObjectView& view, const std::vector<Vector3d>& vertices_camera, const std::vector<Triangle>& triangles) {
-  const ObservedTile tile = observe(view, kEvidenceCells);
-  const DepthTile rendered = render(tile, vertices_camera, triangles);
-  const ImageScore score = image_score(tile, rendered);
-  FitEvidence evidence;
-  evidence.rms_m = score.rms_m;
-  evidence.explained = score.explained;
-  evidence.free_space_violation = score.free_space_violation;
-  evidence.silhouette_iou = score.silhouette_iou;
-  evidence.cost = score.cost;
-  evidence.fit_similarity = fit_similarity(tile, rendered, vertices_camera, triangles);
-  const Transform T_support_camera = view.T_camera_support.inverse();
-  for (const auto& v : vertices_camera) {
-    const Vector3d p = T_support_camera * v;
-    if (view.has_support) evidence.below_support_m = std::max(evidence.below_support_m, -p.z());
-    for (const auto& outline : view.neighbour_footprints)
-      evidence.neighbour_overlap_m = std::max(evidence.neighbour_overlap_m, depth_inside(outline, p.head<2>()));
-  }
-  return evidence;
-}
-
-void mark_observed(const ObjectView& view, const std::vector<Vector3d>& vertices_camera, const std::vector<Triangle>& triangles,
-                   std::vector<std::uint8_t>& states) {
-  const ObservedTile tile = observe(view, kEvidenceCells);
-  const DepthTile rendered = render(tile, vertices_camera, triangles);
+void mark_observed(const ObservedTile& tile, const DepthTile& rendered, const std::vector<Vector3d>& vertices_camera, std::vector<std::uint8_t>& states) {
   states.resize(vertices_camera.size(), 0);
   for (std::size_t i = 0; i < vertices_camera.size(); ++i) {
     states[i] = static_cast<std::uint8_t>(states[i] & ~kVertexObserved);
@@ -113,6 +87,31 @@ void mark_observed(const ObjectView& view, const std::vector<Vector3d>& vertices
       }
     }
   }
+}
+
+}  // namespace
+
+FitEvidence evaluate_fit(const ObjectView& view, const std::vector<Vector3d>& vertices_camera, const std::vector<Triangle>& triangles,
+                         std::vector<std::uint8_t>& states) {
+  const ObservedTile tile = observe(view, kEvidenceCells);
+  const DepthTile rendered = render(tile, vertices_camera, triangles);
+  mark_observed(tile, rendered, vertices_camera, states);
+  const ImageScore score = image_score(tile, rendered);
+  FitEvidence evidence;
+  evidence.rms_m = score.rms_m;
+  evidence.explained = score.explained;
+  evidence.free_space_violation = score.free_space_violation;
+  evidence.silhouette_iou = score.silhouette_iou;
+  evidence.cost = score.cost;
+  evidence.fit_similarity = fit_similarity(tile, rendered, vertices_camera, triangles);
+  const Transform T_support_camera = view.T_camera_support.inverse();
+  for (const auto& v : vertices_camera) {
+    const Vector3d p = T_support_camera * v;
+    if (view.has_support) evidence.below_support_m = std::max(evidence.below_support_m, -p.z());
+    for (const auto& outline : view.neighbour_footprints)
+      evidence.neighbour_overlap_m = std::max(evidence.neighbour_overlap_m, depth_inside(outline, p.head<2>()));
+  }
+  return evidence;
 }
 
 }  // namespace gfp

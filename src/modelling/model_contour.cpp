@@ -20,7 +20,7 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kFirstGateM = 0.015, kLastGateM = 0.008;  ///< Data farther along the normal is another surface.
-constexpr int kStepsPerTarget = 4;                         ///< Semi-implicit steps before visibility and targets are looked up again.
+constexpr int kStepsPerTarget = 3;                         ///< Semi-implicit steps before visibility and targets are looked up again.
 constexpr double kSettledM = 1e-4;                         ///< P25: the largest move of a settled contour.
 constexpr double kMovedM = 3e-4;                           ///< A vertex that moved less is frozen (P27).
 constexpr double kLeastFlip = 0.1;                         ///< Cosine between a triangle's normal before and after.
@@ -61,8 +61,8 @@ bool crosses_itself(const std::vector<Vector3d>& vertices, const std::vector<Tri
   return count_self_intersections({vertices, triangles}, 1) > 0;
 }
 
-/// Moves the rest shape onto the data.
-void run_contour(const ObjectView& view, const Primitive& primitive, const ModellingOptions& options, Contour& contour) {
+/// Moves the rest shape onto the data. False where not even the rest shape is free of intersections.
+bool run_contour(const ObjectView& view, const Primitive& primitive, const ModellingOptions& options, Contour& contour) {
   const auto& triangles = primitive.topology->triangles;
   const auto solver = contour_solver(primitive, options);
   Eigen::MatrixX3d u = Eigen::MatrixX3d::Zero(static_cast<Eigen::Index>(contour.rest.size()), 3);
@@ -91,20 +91,9 @@ void run_contour(const ObjectView& view, const Primitive& primitive, const Model
   // Chain of retreats: as much of the local displacement as neither folds nor crosses.
   for (const double share : {1.0, 0.7, 0.4, 0.15, 0.0}) {
     contour.vertices = displaced(contour.rest, u, share);
-    if (share == 0.0 || (!folds(contour.rest, contour.vertices, triangles) && !crosses_itself(contour.vertices, triangles))) break;
+    if (!folds(contour.rest, contour.vertices, triangles) && !crosses_itself(contour.vertices, triangles)) return true;
   }
-}
-
-/// The placed shape, with modes shrunk until it does not cross itself; an affinely scaled mean shape never does.
-std::vector<Vector3d> placed_shape(const Placement& placement, const Transform& T_support_object, std::vector<double>& modes) {
-  const Primitive& primitive = *placement.primitive;
-  for (const double share : {1.0, 0.6, 0.3, 0.0}) {
-    modes = placement.modes;
-    for (auto& b : modes) b *= share;
-    auto vertices = in_frame(T_support_object, shape(primitive, placement.size_m, modes));
-    if (share == 0.0 || !crosses_itself(vertices, primitive.topology->triangles)) return vertices;
-  }
-  return {};
+  return false;
 }
 
 /// On the table, not in it and not above it.
@@ -115,6 +104,25 @@ void settle_on_support(const ObjectView& view, std::vector<Vector3d>& vertices) 
   for (auto& v : vertices) v.z() -= lowest;
 }
 
+/// Places the shape and runs the contour on it, with modes shrunk until the result does not cross itself; an affinely scaled mean
+/// shape never does.
+Contour model_shape(const ObjectView& view, const Placement& placement, const Transform& T_support_object, const ModellingOptions& options,
+                    std::vector<double>& modes) {
+  const Primitive& primitive = *placement.primitive;
+  Contour contour;
+  for (const double share : {1.0, 0.6, 0.3, 0.0}) {
+    modes = placement.modes;
+    for (auto& b : modes) b *= share;
+    contour = {};
+    contour.rest = in_frame(T_support_object, shape(primitive, placement.size_m, modes));
+    settle_on_support(view, contour.rest);
+    contour.vertices = contour.rest;
+    if (run_contour(view, primitive, options, contour)) break;
+  }
+  settle_on_support(view, contour.vertices);
+  return contour;
+}
+
 }  // namespace
 
 FittedModel model_contour(const ObjectView& view, const Placement& placement, const ModellingOptions& options) {
@@ -122,12 +130,7 @@ FittedModel model_contour(const ObjectView& view, const Placement& placement, co
   const auto& triangles = primitive.topology->triangles;
   const Transform T_support_object = view.T_camera_support.inverse() * placement.T_camera_object;
   FittedModel model;
-  Contour contour;
-  contour.rest = placed_shape(placement, T_support_object, model.modes);
-  settle_on_support(view, contour.rest);
-  contour.vertices = contour.rest;
-  run_contour(view, primitive, options, contour);
-  settle_on_support(view, contour.vertices);
+  Contour contour = model_shape(view, placement, T_support_object, options, model.modes);
 
   model.method = "gfp_robust";
   model.class_name = primitive.class_name;
@@ -145,14 +148,13 @@ FittedModel model_contour(const ObjectView& view, const Placement& placement, co
   if (placement.covariance.rows() >= 6) model.pose_covariance = placement.covariance.topLeftCorner<6, 6>();
 
   const auto vertices_camera = in_frame(view.T_camera_support, contour.vertices);
-  mark_observed(view, vertices_camera, triangles, model.states);
+  model.evidence = evaluate_fit(view, vertices_camera, triangles, model.states);
   for (std::size_t i = 0; i < model.states.size(); ++i) {
     if (primitive.topology->types[i] == PointType::kControl) model.states[i] |= kVertexControl;
     if ((contour.vertices[i] - contour.rest[i]).norm() > kMovedM) model.states[i] |= kVertexMoved;
   }
   contour.data.readings.resize(model.vertices.size(), 0);  // no look at the image where no iteration was asked for
   model.sigma_m = vertex_sigma(view, placement, contour.data, model.states, contour.vertices, vertex_normals({contour.vertices, triangles}));
-  model.evidence = evaluate_fit(view, vertices_camera, triangles);
   const Eigen::Vector3d deviation = placement.size_m.array().log().matrix() - primitive.log_size_mean;
   double squared = deviation.dot(primitive.log_size_covariance.ldlt().solve(deviation));
   for (const double b : model.modes) squared += b * b;

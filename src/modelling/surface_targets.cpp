@@ -11,6 +11,7 @@ namespace {
 
 using Eigen::Vector3d;
 
+constexpr double kTargetPixels = 2500;    ///< About so many of the object's pixels are looked at: four a vertex.
 constexpr double kReadingsForHalfWeight = 1.5;
 constexpr double kLeastFacing = 0.25;     ///< Cosine between normal and ray below which a difference along the ray says little.
 constexpr double kLeastAgreement = 0.35;  ///< Cosine between modelled and observed normal: else another surface.
@@ -32,7 +33,7 @@ SurfaceTargets surface_targets(const ObjectView& view, const std::vector<Vector3
   targets.distance_m.assign(vertices.size(), 0);
   targets.weight.assign(vertices.size(), 0);
   targets.readings.assign(vertices.size(), 0);
-  const int step = std::max(1, static_cast<int>(std::sqrt(view.object_pixels / 4000.0)));
+  const int step = std::max(1, static_cast<int>(std::lround(std::sqrt(view.object_pixels / kTargetPixels))));
   DepthTile rendered;
   rendered.reset(view.tile, step);
   rasterise(vertices, triangles, view.camera, rendered, {.cull_back = true});

@@ -71,10 +71,9 @@ FittedModel volume_model(const ObjectView& view, const SupportedBody& body) {
   model.T_camera_object = view.T_camera_support * Eigen::Translation3d(0, 0, lift) * T_support_object;
   model.size_m = bounds(model.vertices).size();
   const auto vertices_camera = model.mesh_camera().vertices;
-  mark_observed(view, vertices_camera, model.topology->triangles, model.states);
+  model.evidence = evaluate_fit(view, vertices_camera, model.topology->triangles, model.states);
   model.sigma_m = sigma_of(model.vertices, model.states, body.surface_sigma_m);
   model.pose_covariance = pose_covariance(body, T_support_object);
-  model.evidence = evaluate_fit(view, vertices_camera, model.topology->triangles);
   return model;
 }
 

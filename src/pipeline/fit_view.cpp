@@ -8,56 +8,46 @@
 #include "gfp/modelling/model_contour.hpp"
 #include "gfp/recognition/recognise.hpp"
 #include "gfp/registration/register_primitive.hpp"
+#include "gfp/selection/select_models.hpp"
 #include "pipeline/methods.hpp"
 
 namespace gfp {
 namespace {
 
+constexpr double kContourGain = 0.2;  ///< Cost by which a contour may improve one placement more than another.
 constexpr const char* kSuperquadric = "superquadric";
 
-/// A placement with what was believed of its class before.
-struct Placed {
-  Placement placement;
-  double log_prior = 0;
-};
-
-std::vector<Placed> place_all(const ObjectView& view, const std::vector<Hypothesis>& hypotheses, const RegistrationOptions& options) {
-  std::vector<Placed> all;
-  for (const Hypothesis& hypothesis : hypotheses)
-    for (Placement& placement : register_primitive(view, hypothesis, options)) all.push_back({std::move(placement), hypothesis.log_prior});
-  return all;
-}
-
-/// The contour is the dear part: only the placements of least cost get one.
-void keep_best(std::vector<Placed>& all, int count) {
-  std::stable_sort(all.begin(), all.end(), [](const Placed& a, const Placed& b) { return a.placement.cost < b.placement.cost; });
-  if (all.size() > static_cast<std::size_t>(count)) all.resize(static_cast<std::size_t>(count));
-}
-
-std::vector<Candidate> contour_all(const ObjectView& view, const std::vector<Placed>& all, const ModellingOptions& options) {
+/// The contour is the dear part: only the best placements get one, and those that it may still bring to the front.
+std::vector<Candidate> contour_best(const ObjectView& view, const std::vector<Hypothesis>& hypotheses, const std::vector<Placement>& placements, int count,
+                                    const ModellingOptions& options) {
   std::vector<Candidate> candidates;
-  for (const Placed& placed : all) candidates.push_back({model_contour(view, placed.placement, options), placed.log_prior});
+  for (std::size_t k = 0; k < std::min(placements.size(), static_cast<std::size_t>(count)) && placements[k].cost < placements.front().cost + kContourGain; ++k)
+    candidates.push_back({model_contour(view, placements[k], options), hypotheses[static_cast<std::size_t>(placements[k].hypothesis)].log_prior});
   return candidates;
+}
+
+std::vector<Candidate> place_and_contour(const ObjectView& view, const std::vector<Hypothesis>& hypotheses, int contours, const PipelineOptions& options,
+                                         StageTimings& timings) {
+  const auto placements = timings.measure("registration", [&] { return register_hypotheses(view, hypotheses, options.registration); });
+  return timings.measure("modelling", [&] { return contour_best(view, hypotheses, placements, contours, options.modelling); });
 }
 
 std::vector<Candidate> search(const ObjectView& view, const PrimitiveLibrary& library, const PipelineOptions& options, StageTimings& timings) {
   const auto hypotheses = timings.measure("recognition", [&] { return recognise(view, library, options.recognition); });
-  auto placed = timings.measure("registration", [&] { return place_all(view, hypotheses, options.registration); });
-  keep_best(placed, options.budget.max_contours);
-  auto candidates = timings.measure("modelling", [&] { return contour_all(view, placed, options.modelling); });
-  auto superquadric = timings.measure(kSuperquadric, [&] { return fit_superquadric(view); });
-  candidates.push_back({std::move(superquadric), 0.0});  // what `unknown` is worth beforehand is for selection to say
+  auto candidates = place_and_contour(view, hypotheses, options.budget.max_contours, options, timings);
+  if (unknown_may_win(candidates)) {
+    auto superquadric = timings.measure(kSuperquadric, [&] { return fit_superquadric(view); });
+    candidates.push_back({std::move(superquadric), 0.0});  // what `unknown` is worth beforehand is for selection to say
+  }
   return candidates;
 }
 
 /// Follows what the object was in the last frame; nothing where that can't be followed.
 std::vector<Candidate> track(const ObjectView& view, const PrimitiveLibrary& library, const PipelineOptions& options, StageTimings& timings) {
   if (view.warm_start->method == kSuperquadric) return fit_superquadric_only(view, library, options, timings);
-  const Hypothesis known{library.find(view.warm_start->class_name), 0.0, {}};
+  const Hypothesis known{library.find(view.warm_start->primitive), 0.0, {}};
   if (!known.primitive) return {};
-  auto placed = timings.measure("registration", [&] { return place_all(view, {known}, options.registration); });
-  keep_best(placed, 1);
-  return timings.measure("modelling", [&] { return contour_all(view, placed, options.modelling); });
+  return place_and_contour(view, {known}, 1, options, timings);
 }
 
 bool is_as_good_as(const WarmStart& before, const std::vector<Candidate>& candidates, double slack) {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 #include "gfp/memory/observed_tile.hpp"
 #include "recognition/view_descriptor.hpp"
@@ -12,7 +11,7 @@ namespace gfp {
 namespace {
 
 constexpr int kDescriptorCells = 600;
-constexpr double kPoseWorthTrying = 5.0;  ///< Log likelihood by which a stable pose may trail the class's best.
+constexpr double kWorthTrying = 9.0;  ///< Log odds by which a hypothesis may trail the best.
 
 ViewDescriptor describe(const ObjectView& view) {
   const ObservedTile tile = observe(view, kDescriptorCells);
@@ -27,43 +26,48 @@ ViewDescriptor describe(const ObjectView& view) {
   return describe_view(points, std::atan2(sight.y(), sight.x()));
 }
 
-struct ClassBelief {
-  double log_posterior = -1e300;
-  std::vector<std::pair<double, int>> poses;  ///< (log posterior, stable pose)
+/// That it is this primitive in this stable pose.
+struct Belief {
+  int primitive = 0, stable_pose = 0;
+  double log_posterior = 0;
 };
 
-Hypothesis to_hypothesis(const PrimitivePtr& primitive, ClassBelief belief) {
-  std::sort(belief.poses.begin(), belief.poses.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
-  Hypothesis hypothesis{primitive, belief.log_posterior, {}};
-  for (const auto& [log_posterior, pose] : belief.poses)
-    if (log_posterior > belief.poses.front().first - kPoseWorthTrying) hypothesis.stable_poses.push_back(pose);
-  return hypothesis;
+std::vector<Belief> believe(const ObjectView& view, const PrimitiveLibrary& library) {
+  std::vector<Belief> beliefs;
+  for (const auto& [primitive, pose, log_likelihood] : view_index(library)->likelihoods(describe(view))) {
+    const double prior = library.all()[static_cast<std::size_t>(primitive)]->stable_poses[static_cast<std::size_t>(pose)].probability;
+    beliefs.push_back({primitive, pose, log_likelihood + std::log(std::max(1e-3, prior))});
+  }
+  return beliefs;
+}
+
+/// Log posteriors sum to one.
+void normalise(std::vector<Belief>& beliefs) {
+  double total = 0, best = -1e300;
+  for (const auto& belief : beliefs) best = std::max(best, belief.log_posterior);
+  for (const auto& belief : beliefs) total += std::exp(belief.log_posterior - best);
+  for (auto& belief : beliefs) belief.log_posterior -= best + std::log(total);
 }
 
 }  // namespace
 
 std::vector<Hypothesis> recognise(const ObjectView& view, const PrimitiveLibrary& library, const RecognitionOptions& options) {
   if (view.object_pixels == 0 || library.all().empty()) return {};
-  std::vector<ClassBelief> beliefs(library.all().size());
-  for (const auto& [primitive, pose, log_likelihood] : view_index(library)->likelihoods(describe(view))) {
-    auto& belief = beliefs[static_cast<std::size_t>(primitive)];
-    const double prior = library.all()[static_cast<std::size_t>(primitive)]->stable_poses[static_cast<std::size_t>(pose)].probability;
-    const double log_posterior = log_likelihood + std::log(std::max(1e-3, prior));
-    belief.poses.emplace_back(log_posterior, pose);
-    belief.log_posterior = std::max(belief.log_posterior, log_posterior);
+  std::vector<Belief> beliefs = believe(view, library);
+  normalise(beliefs);
+  if (const auto known = library.of_class(options.only_class); !known.empty())
+    std::erase_if(beliefs, [&](const Belief& belief) { return std::find(known.begin(), known.end(), library.all()[static_cast<std::size_t>(belief.primitive)]) == known.end(); });
+  std::stable_sort(beliefs.begin(), beliefs.end(), [](const Belief& a, const Belief& b) { return a.log_posterior > b.log_posterior; });
+  if (beliefs.size() > static_cast<std::size_t>(options.max_hypotheses)) beliefs.resize(static_cast<std::size_t>(options.max_hypotheses));
+
+  std::vector<Hypothesis> hypotheses;  // a primitive's best pose comes first, so it gives the order and the prior
+  for (const Belief& belief : beliefs) {
+    if (belief.log_posterior < beliefs.front().log_posterior - kWorthTrying) break;
+    const PrimitivePtr& primitive = library.all()[static_cast<std::size_t>(belief.primitive)];
+    auto hypothesis = std::find_if(hypotheses.begin(), hypotheses.end(), [&](const Hypothesis& h) { return h.primitive == primitive; });
+    if (hypothesis == hypotheses.end()) hypothesis = hypotheses.insert(hypotheses.end(), {primitive, belief.log_posterior, {}});
+    hypothesis->stable_poses.push_back(belief.stable_pose);
   }
-  const PrimitivePtr known = options.only_class.empty() ? nullptr : library.find(options.only_class);
-  double total = 0, best = -1e300;
-  for (const auto& belief : beliefs) best = std::max(best, belief.log_posterior);
-  for (const auto& belief : beliefs) total += std::exp(belief.log_posterior - best);
-  std::vector<Hypothesis> hypotheses;
-  for (std::size_t p = 0; p < beliefs.size(); ++p) {
-    if (beliefs[p].poses.empty() || (known && library.all()[p] != known)) continue;
-    hypotheses.push_back(to_hypothesis(library.all()[p], beliefs[p]));
-    hypotheses.back().log_prior -= best + std::log(total);
-  }
-  std::stable_sort(hypotheses.begin(), hypotheses.end(), [](const Hypothesis& a, const Hypothesis& b) { return a.log_prior > b.log_prior; });
-  if (hypotheses.size() > static_cast<std::size_t>(options.max_hypotheses)) hypotheses.resize(static_cast<std::size_t>(options.max_hypotheses));
   return hypotheses;
 }
 

@@ -11,6 +11,10 @@ namespace {
 
 using Eigen::Vector3d;
 
+constexpr double kScanSigmaM = 0.015;  ///< Size and place are guesses: what is only near must score better than what is far.
+
+constexpr double kPeakSteps = 1.6;     ///< Yaws nearer than so many steps are one peak.
+
 /// Low and high `share` quantiles of the values.
 std::pair<double, double> quantile_range(std::vector<double>& values, double share) {
   const auto low = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
@@ -41,6 +45,14 @@ ModelExtent model_extent(const Primitive& primitive, const Eigen::Matrix3d& rota
   return extent;
 }
 
+/// Of the rotated, scaled mean shape about its origin.
+double lowest_point(const Primitive& primitive, const Eigen::Matrix3d& rotation, const Vector3d& size) {
+  const Vector3d up = size.cwiseProduct(rotation.transpose() * Vector3d::UnitZ());
+  double lowest = 1e300;
+  for (const auto& p : primitive.mean) lowest = std::min(lowest, up.dot(p));
+  return lowest;
+}
+
 PoseState initial_state(VisibleFit& fit, const ObservedExtent& extent, const Primitive& primitive, const Eigen::Matrix3d& rotation) {
   Vector3d log_size = primitive.log_size_mean;
   for (int pass = 0; pass < 2; ++pass) {  // the second pass linearises at a better size
@@ -60,13 +72,29 @@ PoseState initial_state(VisibleFit& fit, const ObservedExtent& extent, const Pri
   state.log_size = log_size;
   state.modes.setZero(static_cast<Eigen::Index>(primitive.modes.size()));
   state.T_support_object.translation() = extent.centroid;
-  for (int pass = 0; pass < 2; ++pass) {
-    fit.pose(state);
-    state.T_support_object.translation().z() -= fit.lowest_z();
-    const Vector3d shift = fit.visible_centroid_shift();
-    state.T_support_object.translation().head<2>() += shift.head<2>();
-  }
+  state.T_support_object.translation().z() = -lowest_point(primitive, rotation, log_size.array().exp().matrix());
+  fit.pose(state);
+  state.T_support_object.translation().head<2>() += fit.visible_centroid_shift().head<2>();
   return state;
+}
+
+struct YawState {
+  double yaw_steps = 0;
+  ScoredState scored;
+};
+
+/// The best yaws, best first, no two of which are neighbours: a refinement leads neighbours to the same place.
+void keep_peaks(std::vector<YawState>& states, int steps_around, int keep) {
+  std::stable_sort(states.begin(), states.end(), [](const YawState& a, const YawState& b) { return a.scored.score < b.scored.score; });
+  std::vector<YawState> peaks;
+  for (YawState& state : states) {
+    const bool beside = std::any_of(peaks.begin(), peaks.end(), [&](const YawState& peak) {
+      return std::abs(std::remainder(state.yaw_steps - peak.yaw_steps, static_cast<double>(steps_around))) < kPeakSteps;
+    });
+    if (!beside) peaks.push_back(std::move(state));
+    if (peaks.size() == static_cast<std::size_t>(keep)) break;
+  }
+  states = std::move(peaks);
 }
 
 }  // namespace
@@ -99,19 +127,29 @@ int distinct_yaws(const Primitive& primitive, const StablePose& pose, int steps)
   return half_turn ? std::max(1, steps / 2) : steps;
 }
 
-std::vector<ScoredState> search_yaws(VisibleFit& fit, const ObservedExtent& extent, const Primitive& primitive, int stable_pose, int yaw_steps) {
+std::vector<ScoredState> search_yaws(VisibleFit& fit, const ObservedExtent& extent, const Primitive& primitive, int stable_pose, int yaw_steps, int keep) {
   const StablePose& pose = primitive.stable_poses[static_cast<std::size_t>(stable_pose)];
-  std::vector<ScoredState> states;
-  const int count = distinct_yaws(primitive, pose, yaw_steps);
-  for (int k = 0; k < count; ++k) {
-    const double yaw = extent.azimuth_rad + 2 * std::numbers::pi * k / yaw_steps;
-    const Eigen::Matrix3d rotation = Eigen::AngleAxisd(yaw, Vector3d::UnitZ()) * pose.R_support_object;
+  const double step = 2 * std::numbers::pi / yaw_steps;
+  const auto at_yaw = [&](double steps) {
+    const Eigen::Matrix3d rotation = Eigen::AngleAxisd(extent.azimuth_rad + steps * step, Vector3d::UnitZ()) * pose.R_support_object;
     ScoredState scored{initial_state(fit, extent, primitive, rotation), stable_pose, 0};
     fit.pose(scored.state);
-    scored.score = fit.score();
-    states.push_back(std::move(scored));
+    scored.score = fit.score(kScanSigmaM);
+    return scored;
+  };
+  const int count = distinct_yaws(primitive, pose, yaw_steps);
+  std::vector<YawState> states;
+  for (int k = 0; k < count; ++k) states.push_back({static_cast<double>(k), at_yaw(k)});
+  keep_peaks(states, count, keep);
+  if (count > 1) {  // between the steps beside the best ones
+    const std::size_t peaks = states.size();
+    for (std::size_t k = 0; k < peaks; ++k)
+      for (const double side : {-0.5, 0.5}) states.push_back({states[k].yaw_steps + side, at_yaw(states[k].yaw_steps + side)});
+    keep_peaks(states, count, keep);
   }
-  return states;
+  std::vector<ScoredState> result;
+  for (auto& [yaw, scored] : states) result.push_back(std::move(scored));
+  return result;
 }
 
 }  // namespace gfp

@@ -27,8 +27,8 @@ struct ObservedExtent {
 ObservedExtent observed_extent(const ObjectView& view, const ObservedTile& tile);
 
 /// Steps through the yaws of one stable pose: size from the measured height and width under the class prior, position from the
-/// visible centroids (ALGORITHM 1.1-1.3). One state a yaw, in order of yaw.
-std::vector<ScoredState> search_yaws(VisibleFit& fit, const ObservedExtent& extent, const Primitive& primitive, int stable_pose, int yaw_steps);
+/// visible centroids (ALGORITHM 1.1-1.3), then between the steps beside the best ones. The `keep` best, best first.
+std::vector<ScoredState> search_yaws(VisibleFit& fit, const ObservedExtent& extent, const Primitive& primitive, int stable_pose, int yaw_steps, int keep);
 
 /// How many distinct yaws of `steps` over the full turn a class needs, given its symmetry when it rests like `pose`.
 int distinct_yaws(const Primitive& primitive, const StablePose& pose, int steps);

@@ -4,50 +4,60 @@
 #include <cmath>
 #include <numbers>
 #include <numeric>
+#include <span>
 
 #include "registration/class_prior.hpp"
 #include "registration/pose_search.hpp"
 #include "registration/visible_fit.hpp"
 
-// Search (coarse grid): every stable pose and yaw gets a size and a place; the best few are refined there, and the best of those on
-// the fine grid. The fine grid decides.
+// A race. Every stable pose and yaw of every hypothesis gets a size and a place on the coarse grid; the best are refined there, the best
+// of those on the fine grid, which decides. What trails too far is out, whatever hypothesis it belongs to: right classes fit early.
 
 namespace gfp {
 namespace {
 
-constexpr int kSearchCells = 300;      ///< Object cells of the search grid.
-constexpr double kHopeless = 0.6;       ///< Score by which a coarse placement may trail the best and still be refined finely.
-constexpr double kConvergedStep = 2e-4;///< Metres, radians and log sizes alike: well below the noise.
+constexpr int kSearchCells = 280;       ///< Object cells of the search grid.
+constexpr int kCoarseSteps = 8;         ///< Of the refinement on the search grid.
+constexpr double kCoarseSigmaM = 0.006; ///< With which placements on the search grid are scored.
+constexpr int kYawsPerPose = 3;         ///< Of a scan that stay in the race.
+constexpr double kFarBehind = 1.5;      ///< Score by which an unrefined contender may trail the best.
+constexpr double kHopeless = 0.5;       ///< The same once it is refined on the coarse grid.
+constexpr double kPixelsPerPrior = 60;  ///< Independent readings that the score stands for: what a nat of the class prior weighs against it.
+constexpr double kTwinM = 0.01;         ///< Corners of bounding boxes of the same placement.
+constexpr int kStalled = 3;              ///< Steps without a better score: re-association jitters about the optimum.
+constexpr double kConvergedStep = 2e-4; ///< Metres, radians and log sizes alike: well below the noise.
+
+/// How one stage of the race refines: from rough to tight.
+struct Refinement {
+  int iterations;
+  double first_robust_m, last_robust_m;  ///< Residuals beyond this lose their say.
+  double model_sigma_m = kModelSigmaM;   ///< With which placements are scored.
+};
 
 /// Gauss-Newton with annealed robust scale; keeps the best state seen. Returns the number of steps.
-int refine(VisibleFit& fit, ScoredState& best, double coarse_m, double fine_m, int iterations, bool& converged) {
+int refine(VisibleFit& fit, ScoredState& best, const Refinement& stage, bool& converged) {
   PoseState state = best.state;
-  double robust = coarse_m, damping = 1e-3;
+  double robust = stage.first_robust_m, damping = 1e-3;
   converged = false;
-  int k = 0;
+  int k = 0, since_best = 0;
   fit.pose(state);
-  for (; k < iterations; ++k) {
+  for (; k < stage.iterations; ++k) {
     const Eigen::VectorXd step = fit.step({.robust_m = robust}, damping);
     state.apply(step);
     fit.pose(state);
-    const double score = fit.score();
+    const double score = fit.score(stage.model_sigma_m);
     const bool better = score < best.score;
-    if (better || robust > 1.5 * fine_m) best = {state, best.stable_pose, better ? score : best.score};
+    if (better || robust > 1.5 * stage.last_robust_m) best = {state, best.stable_pose, better ? score : best.score};
+    since_best = better ? 0 : since_best + 1;
     damping = better ? std::max(1e-4, damping * 0.5) : std::min(1.0, damping * 4);
-    robust = std::max(fine_m, 0.6 * robust);
-    if (robust == fine_m && step.head<PoseState::kShape>().cwiseAbs().maxCoeff() < kConvergedStep) {
-      converged = true;
-      break;
-    }
+    robust = std::max(stage.last_robust_m, 0.6 * robust);
+    if (robust == stage.last_robust_m && step.head<PoseState::kShape>().cwiseAbs().maxCoeff() < kConvergedStep) converged = true;
+    if (robust == stage.last_robust_m && since_best >= kStalled) converged = true;
+    if (converged) break;
   }
   fit.pose(best.state);
-  best.score = fit.score();
+  best.score = fit.score(stage.model_sigma_m);
   return k;
-}
-
-void keep_best(std::vector<ScoredState>& states, std::size_t count) {
-  std::stable_sort(states.begin(), states.end(), [](const ScoredState& a, const ScoredState& b) { return a.score < b.score; });
-  if (states.size() > count) states.resize(count);
 }
 
 /// A hypothesis that names no stable pose leaves all of them open.
@@ -59,7 +69,7 @@ std::vector<int> poses_to_try(const Hypothesis& hypothesis) {
 }
 
 std::optional<ScoredState> warm_state(const ObjectView& view, const Primitive& primitive) {
-  if (!view.warm_start || view.warm_start->class_name != primitive.class_name) return std::nullopt;
+  if (!view.warm_start || view.warm_start->primitive != primitive.name) return std::nullopt;
   ScoredState scored;
   scored.state.T_support_object = view.T_camera_support.inverse() * view.warm_start->T_camera_object;
   scored.state.log_size = view.warm_start->scale.array().log().matrix();
@@ -77,7 +87,7 @@ Placement to_placement(const ObjectView& view, const PrimitivePtr& primitive, Vi
   placement.size_m = scored.state.log_size.array().exp().matrix();
   placement.modes.assign(scored.state.modes.data(), scored.state.modes.data() + scored.state.modes.size());
   placement.stable_pose = scored.stable_pose;
-  const double effective_pixels = std::min(400.0, static_cast<double>(std::max(1, pixels)));
+  const double effective_pixels = std::min(kPixelsPerPrior, static_cast<double>(std::max(1, pixels)));
   placement.cost = scored.score + prior_energy(*primitive, scored.state.log_size, scored.state.modes) / effective_pixels;
   fit.pose(scored.state);
   fit.step({.robust_m = 0.006}, 0);
@@ -86,7 +96,7 @@ Placement to_placement(const ObjectView& view, const PrimitivePtr& primitive, Vi
 }
 
 /// The yaws about the found one that explain the view as well: a hidden handle gives a range (ALGORITHM 1.6).
-void find_yaw_interval(VisibleFit& fit, const PoseState& found, const Primitive& primitive, double best_score, Placement& placement) {
+void find_yaw_interval(VisibleFit& fit, const PoseState& found, const Primitive& primitive, Placement& placement) {
   const bool upright = std::abs(found.T_support_object.linear()(2, 2)) > 0.99;
   if (upright && primitive.symmetry.revolution) {
     placement.yaw_low_rad = -std::numbers::pi;
@@ -95,12 +105,14 @@ void find_yaw_interval(VisibleFit& fit, const PoseState& found, const Primitive&
   }
   constexpr double kStep = std::numbers::pi / 24;
   constexpr double kAsGood = 0.04;  ///< Of the score: about 15 effective pixels' half log likelihoods.
+  fit.pose(found);
+  const double limit = fit.score() + kAsGood;
   const auto reach = [&](double direction) {
     for (int k = 1; k <= 24; ++k) {
       PoseState turned = found;
       turned.T_support_object.linear() = Eigen::AngleAxisd(direction * k * kStep, Eigen::Vector3d::UnitZ()) * found.T_support_object.linear();
       fit.pose(turned);
-      if (fit.score() > best_score + kAsGood) return direction * (k - 0.5) * kStep;
+      if (fit.score() > limit) return direction * (k - 0.5) * kStep;
     }
     return direction * std::numbers::pi;
   };
@@ -108,54 +120,127 @@ void find_yaw_interval(VisibleFit& fit, const PoseState& found, const Primitive&
   placement.yaw_high_rad = reach(1);
 }
 
+/// One of the placements that still may win.
+struct Contender {
+  std::size_t hypothesis = 0;
+  ScoredState scored;
+  double standing = 0;  ///< Score plus what size and modes cost under the class; lower is better.
+  int iterations = 0;
+  bool converged = false;
+};
+
+class Race {
+ public:
+  Race(const ObjectView& view, std::span<const Hypothesis> hypotheses, const RegistrationOptions& options)
+      : view_(view), hypotheses_(hypotheses), options_(options), fine_tile_(observe(view, options.sample_pixels)), coarse_tile_(observe(view, kSearchCells)) {
+    for (const Hypothesis& hypothesis : hypotheses) {
+      coarse_.emplace_back(coarse_tile_, *hypothesis.primitive, view.has_support);
+      fine_.emplace_back(fine_tile_, *hypothesis.primitive, view.has_support);
+    }
+  }
+
+  /// What the last frame knew joins; true where that alone is good enough.
+  bool follow() {
+    constexpr double kStillGood = 1.2;  // score up to which a warm start is trusted
+    for (std::size_t h = 0; h < hypotheses_.size(); ++h)
+      if (auto warm = warm_state(view_, *hypotheses_[h].primitive)) contenders_.push_back({h, std::move(*warm)});
+    if (contenders_.empty()) return false;
+    refine_all(fine_, {std::min(6, options_.max_iterations), 0.006, 0.004});
+    return hypotheses_.size() == 1 && contenders_.front().scored.score <= kStillGood;
+  }
+
+  void search() {
+    const ObservedExtent extent = observed_extent(view_, coarse_tile_);
+    for (std::size_t h = 0; h < hypotheses_.size(); ++h) scan(h, extent);
+    drop(kFarBehind, static_cast<std::size_t>(options_.keep + 6));
+    refine_all(coarse_, {kCoarseSteps, 0.03, 0.008, kCoarseSigmaM});
+    drop_twins();
+    drop(kHopeless, static_cast<std::size_t>(options_.keep));
+    refine_all(fine_, {options_.max_iterations, 0.012, 0.004});
+    drop(kFarBehind, static_cast<std::size_t>(options_.keep));
+  }
+
+  std::vector<Placement> placements() {
+    std::vector<Placement> result;
+    std::vector<bool> has_yaw(hypotheses_.size(), false);
+    for (const Contender& contender : contenders_) {
+      const std::size_t h = contender.hypothesis;
+      result.push_back(to_placement(view_, hypotheses_[h].primitive, fine_[h], contender.scored, view_.object_pixels));
+      result.back().hypothesis = static_cast<int>(h);
+      result.back().iterations = contender.iterations;
+      result.back().converged = contender.converged;
+      if (!has_yaw[h]) find_yaw_interval(coarse_[h], contender.scored.state, *hypotheses_[h].primitive, result.back());
+      has_yaw[h] = true;
+    }
+    return result;
+  }
+
+ private:
+  void scan(std::size_t h, const ObservedExtent& extent) {
+    const Primitive& primitive = *hypotheses_[h].primitive;
+    for (const int pose : poses_to_try(hypotheses_[h])) {
+      for (auto& scored : search_yaws(coarse_[h], extent, primitive, pose, options_.yaw_steps, kYawsPerPose)) contenders_.push_back({h, std::move(scored)});
+    }
+  }
+
+  void refine_all(std::vector<VisibleFit>& fits, const Refinement& stage) {
+    for (Contender& contender : contenders_) {
+      VisibleFit& fit = fits[contender.hypothesis];
+      fit.pose(contender.scored.state);
+      contender.scored.score = fit.score(stage.model_sigma_m);
+      contender.iterations = refine(fit, contender.scored, stage, contender.converged);
+    }
+  }
+
+  /// Sorts by standing; keeps at most `count`, none of which trails the best by more than `margin`.
+  void drop(double margin, std::size_t count) {
+    for (Contender& contender : contenders_) {
+      const PoseState& state = contender.scored.state;
+      contender.standing = contender.scored.score + prior_energy(*hypotheses_[contender.hypothesis].primitive, state.log_size, state.modes) / kPixelsPerPrior;
+    }
+    std::stable_sort(contenders_.begin(), contenders_.end(), [](const Contender& a, const Contender& b) { return a.standing < b.standing; });
+    const double limit = contenders_.front().standing + margin;
+    std::erase_if(contenders_, [&](const Contender& contender) { return contender.standing > limit; });
+    if (contenders_.size() > count) contenders_.resize(count);
+  }
+
+  /// A box on its side is a box: of contenders of one primitive that fill the same space, the first stays.
+  void drop_twins() {
+    std::stable_sort(contenders_.begin(), contenders_.end(), [](const Contender& a, const Contender& b) { return a.scored.score < b.scored.score; });
+    std::vector<Bounds> filled;
+    std::vector<Contender> different;
+    for (Contender& contender : contenders_) {
+      coarse_[contender.hypothesis].pose(contender.scored.state);
+      const Bounds box = bounds(coarse_[contender.hypothesis].vertices_support());
+      bool twin = false;
+      for (std::size_t k = 0; k < different.size(); ++k)
+        twin = twin || (different[k].hypothesis == contender.hypothesis && std::max((filled[k].low - box.low).norm(), (filled[k].high - box.high).norm()) < kTwinM);
+      if (twin) continue;
+      filled.push_back(box);
+      different.push_back(std::move(contender));
+    }
+    contenders_ = std::move(different);
+  }
+
+  const ObjectView& view_;
+  std::span<const Hypothesis> hypotheses_;
+  const RegistrationOptions& options_;
+  SearchTile fine_tile_, coarse_tile_;
+  std::vector<VisibleFit> coarse_, fine_;
+  std::vector<Contender> contenders_;
+};
+
 }  // namespace
 
-std::vector<Placement> register_primitive(const ObjectView& view, const Hypothesis& hypothesis, const RegistrationOptions& options) {
-  const Primitive& primitive = *hypothesis.primitive;
-  const ObservedTile fine_tile = observe(view, options.sample_pixels);
-  VisibleFit fine(fine_tile, primitive, view.has_support);
-  std::vector<ScoredState> states;
-  bool converged = false;
-  int iterations = 0;
-  const auto refine_on_fine_grid = [&](double coarse_m, int count) {
-    for (auto& scored : states) {
-      fine.pose(scored.state);
-      scored.score = fine.score();
-      iterations = refine(fine, scored, coarse_m, 0.004, count, converged);
-    }
-  };
+std::vector<Placement> register_hypotheses(const ObjectView& view, std::span<const Hypothesis> hypotheses, const RegistrationOptions& options) {
+  if (hypotheses.empty()) return {};
+  Race race(view, hypotheses, options);
+  if (!race.follow()) race.search();
+  return race.placements();
+}
 
-  constexpr double kStillGood = 1.2;  ///< Score up to which a warm start is trusted.
-  if (auto warm = warm_state(view, primitive)) {
-    states.push_back(*warm);
-    refine_on_fine_grid(0.006, std::min(6, options.max_iterations));
-    if (states.front().score > kStillGood && !hypothesis.stable_poses.empty()) states.clear();
-  }
-  if (states.empty()) {
-    const ObservedTile coarse_tile = observe(view, kSearchCells);
-    VisibleFit coarse(coarse_tile, primitive, view.has_support);
-    const ObservedExtent extent = observed_extent(view, coarse_tile);
-    for (const int pose : poses_to_try(hypothesis)) {
-      auto found = search_yaws(coarse, extent, primitive, pose, options.yaw_steps);
-      keep_best(found, static_cast<std::size_t>(options.keep + 1));
-      states.insert(states.end(), found.begin(), found.end());
-    }
-    keep_best(states, static_cast<std::size_t>(2 * options.keep));
-    for (auto& scored : states) refine(coarse, scored, 0.02, 0.008, 5, converged);
-    keep_best(states, static_cast<std::size_t>(options.keep));
-    const double best_score = states.front().score;
-    std::erase_if(states, [&](const ScoredState& scored) { return scored.score > best_score + kHopeless; });
-    refine_on_fine_grid(0.012, options.max_iterations);
-    keep_best(states, static_cast<std::size_t>(options.keep));
-  }
-  std::vector<Placement> placements;
-  for (const auto& scored : states) {
-    placements.push_back(to_placement(view, hypothesis.primitive, fine, scored, view.object_pixels));
-    placements.back().iterations = iterations;
-    placements.back().converged = converged;
-  }
-  find_yaw_interval(fine, states.front().state, primitive, states.front().score, placements.front());
-  return placements;
+std::vector<Placement> register_primitive(const ObjectView& view, const Hypothesis& hypothesis, const RegistrationOptions& options) {
+  return register_hypotheses(view, {&hypothesis, 1}, options);
 }
 
 }  // namespace gfp

@@ -72,7 +72,13 @@ void PoseState::apply(const Eigen::VectorXd& step) {
   modes += step.tail(modes.size());
 }
 
-VisibleFit::VisibleFit(const ObservedTile& tile, const Primitive& primitive, bool has_support)
+SearchTile::SearchTile(ObservedTile observed) : ObservedTile(std::move(observed)) {
+  std::vector<std::uint8_t> is_object(at(cells()), 0);
+  for (const int cell : object_cells) is_object[at(cell)] = 1;
+  nearest_object = nearest_seed(is_object, width, height);
+}
+
+VisibleFit::VisibleFit(const SearchTile& tile, const Primitive& primitive, bool has_support)
     : tile_(tile), primitive_(primitive), has_support_(has_support), size_information_(primitive.log_size_covariance.inverse()),
       camera_support_(tile.T_camera_support.inverse().translation()) {}
 

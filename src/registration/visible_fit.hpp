@@ -28,6 +28,12 @@ struct FitScale {
   double contact_sigma_m = 0.0015;
 };
 
+/// What a fit is compared with: the observation, and where its silhouette should be drawn in to.
+struct SearchTile : ObservedTile {
+  explicit SearchTile(ObservedTile observed);
+  std::vector<std::int32_t> nearest_object;  ///< Per cell: the nearest object cell in the image; -1 where there is none.
+};
+
 /// Compares what the camera saw of one object with the visible part of a posed primitive, and improves the pose (ALGORITHM 1.3-1.5).
 ///
 /// Four kinds of residuals: point-to-plane at object pixels that the model covers; the model's silhouette drawn out to object
@@ -35,13 +41,13 @@ struct FitScale {
 /// on size and modes closes the system. One thread at a time; holds references to its arguments.
 class VisibleFit {
  public:
-  VisibleFit(const ObservedTile& tile, const Primitive& primitive, bool has_support);
+  VisibleFit(const SearchTile& tile, const Primitive& primitive, bool has_support);
 
   /// Poses and renders `state`; the functions below speak of it.
   void pose(const PoseState& state);
 
   /// Mean capped negative log likelihood over the object's pixels and those where the model stands in free space.
-  double score() const { return image_score(tile_, rendered_).cost; }
+  double score(double model_sigma_m = kModelSigmaM) const { return image_score(tile_, rendered_, model_sigma_m).cost; }
 
   /// Residuals of the posed state -> Gauss-Newton step with Levenberg damping. `information` is the undamped normal matrix.
   Eigen::VectorXd step(const FitScale& scale, double damping);
@@ -64,7 +70,7 @@ class VisibleFit {
   void add_silhouette_residuals(const FitScale& scale);
   void add_contact_and_priors(const FitScale& scale);
 
-  const ObservedTile& tile_;
+  const SearchTile& tile_;
   const Primitive& primitive_;
   bool has_support_;
   Eigen::Matrix3d size_information_;

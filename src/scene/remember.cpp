@@ -49,7 +49,7 @@ WarmStart warm_start_of(const SceneObject& object, const WarmStart& before) {
   const FittedModel& model = object.model;
   const bool unchanged = object.status == ObjectStatus::kUnchanged;
   WarmStart warm;
-  warm.class_name = model.class_name;
+  warm.primitive = model.primitive ? model.primitive->name : "";
   warm.method = model.method;
   warm.T_camera_object = model.T_camera_object;
   warm.scale = model.size_m;

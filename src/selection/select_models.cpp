@@ -8,11 +8,15 @@ namespace {
 
 constexpr double kEffectivePixels = 60;   ///< Independent readings that an object's pixels are worth: noise and misfit are correlated.
 constexpr double kFreedomPenalty = 0.5 * 4.1;  ///< Half log of kEffectivePixels for every free parameter (BIC).
-constexpr double kUnknownLogPrior = -3.0; ///< Of "none of the classes we know".
+constexpr double kUnknownLogPrior = -8.0; ///< Of "none of the classes we know".
 constexpr double kDescriptorTrust = 0.3;  ///< Share of the descriptors' log likelihood that is kept: they are correlated, and the fit saw more.
 
+constexpr int kUnknownFreedoms = 5;       ///< Of a superquadric: sizes and exponents; the pose is everybody's.
+constexpr double kLeastCost = 0.2;        ///< Of the best fits of real objects: noise, ragged edges.
+constexpr double kNegligibleOdds = 3.0;   ///< Log odds beyond which an alternative does not matter.
+
 /// Parameters that no prior ties down; a class's size and modes pay through their Mahalanobis distance.
-int free_parameters(const FittedModel& model) { return model.primitive ? 0 : 5; }
+int free_parameters(const FittedModel& model) { return model.primitive ? 0 : kUnknownFreedoms; }
 
 double log_evidence(const Candidate& candidate) {
   const FitEvidence& evidence = candidate.model.evidence;
@@ -45,6 +49,11 @@ ObjectEstimate select_one(const ObjectView& view, std::vector<Candidate> candida
 }
 
 }  // namespace
+
+bool unknown_may_win(const std::vector<Candidate>& candidates) {
+  const double flawless = kUnknownLogPrior - kEffectivePixels * kLeastCost - kFreedomPenalty * kUnknownFreedoms;
+  return std::none_of(candidates.begin(), candidates.end(), [&](const Candidate& c) { return log_evidence(c) > flawless + kNegligibleOdds; });
+}
 
 std::vector<ObjectEstimate> select_models(const std::vector<ObjectView>& views, std::vector<std::vector<Candidate>> candidates,
                                           const SelectionOptions&) {

@@ -31,7 +31,7 @@ PrimitiveLibrary library_of(const std::vector<std::string>& class_names) {
   std::vector<PrimitivePtr> primitives;
   for (const std::string& name : class_names) {
     auto primitive = std::make_shared<Primitive>();
-    primitive->class_name = name;
+    primitive->name = primitive->class_name = name;
     primitives.push_back(primitive);
   }
   return PrimitiveLibrary(primitives);
@@ -106,17 +106,24 @@ std::vector<Hypothesis> recognise(const ObjectView&, const PrimitiveLibrary& lib
   return hypotheses;
 }
 
-std::vector<Placement> register_primitive(const ObjectView&, const Hypothesis& hypothesis, const RegistrationOptions&) {
-  ++test::script().registered;
-  Placement placement;
-  placement.primitive = hypothesis.primitive;
-  placement.cost = test::cost_of(hypothesis.primitive->class_name);
-  return {placement};
+std::vector<Placement> register_hypotheses(const ObjectView&, std::span<const Hypothesis> hypotheses, const RegistrationOptions&) {
+  std::vector<Placement> placements;
+  for (const Hypothesis& hypothesis : hypotheses) {
+    ++test::script().registered;
+    Placement placement;
+    placement.primitive = hypothesis.primitive;
+    placement.hypothesis = static_cast<int>(placements.size());
+    placement.cost = test::cost_of(hypothesis.primitive->class_name);
+    placements.push_back(placement);
+  }
+  std::sort(placements.begin(), placements.end(), [](const Placement& a, const Placement& b) { return a.cost < b.cost; });
+  return placements;
 }
 
 FittedModel model_contour(const ObjectView& view, const Placement& placement, const ModellingOptions&) {
   ++test::script().contoured;
   FittedModel model = test::box_model("gfp_robust", placement.primitive->class_name, {0.1, 0.1, 0.1}, placement.cost);
+  model.primitive = placement.primitive;
   model.T_camera_object.translation() = view.camera.ray(view.tile.u0, view.tile.v0);
   return model;
 }
@@ -124,6 +131,10 @@ FittedModel model_contour(const ObjectView& view, const Placement& placement, co
 FittedModel fit_superquadric(const ObjectView&, const FitSuperquadricOptions&) {
   ++test::script().superquadrics;
   return test::box_model("superquadric", "unknown", {0.1, 0.1, 0.1}, test::cost_of("unknown"));
+}
+
+bool unknown_may_win(const std::vector<Candidate>& candidates) {
+  return std::none_of(candidates.begin(), candidates.end(), [](const Candidate& c) { return c.model.evidence.cost < test::cost_of("unknown") - 3; });
 }
 
 std::vector<ObjectEstimate> select_models(const std::vector<ObjectView>& views, std::vector<std::vector<Candidate>> candidates, const SelectionOptions&) {

@@ -91,7 +91,7 @@ TEST(RegisterPrimitive, AWarmStartGivesTheSamePlaceInFewerSteps) {
   ObjectView view = view_from(can, 35, 0, 1);
   const Placement cold = register_primitive(view, all_poses(test::can_primitive())).front();
   WarmStart& start = view.warm_start.emplace();
-  start.class_name = "can";
+  start.primitive = "can";
   start.T_camera_object = cold.T_camera_object;
   start.scale = cold.size_m;
   start.modes = cold.modes;

@@ -42,7 +42,7 @@ TEST(Remember, KeepsPlaceFitAndPlane) {
   EXPECT_EQ(track.pixels, seen.blocks.segments.segments[0].pixels);
   EXPECT_EQ(track.bbox, (PixelRect{20, 30, 40, 50}));
   EXPECT_NEAR(track.centre_world.z(), 0.8, 1e-6);
-  EXPECT_EQ(track.fit.class_name, "box");
+  EXPECT_EQ(track.fit.method, "gfp_robust");
   EXPECT_DOUBLE_EQ(track.fit.cost, 0.5);
   EXPECT_EQ(track.fit.fits, 1);
 }

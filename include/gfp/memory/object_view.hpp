@@ -25,7 +25,7 @@ enum class Evidence : std::uint8_t {
 
 /// What the last frame knew of this object; lets the fit skip its search.
 struct WarmStart {
-  std::string class_name;
+  std::string primitive;                ///< Its name; empty for methods without one.
   std::string method;
   Transform T_camera_object = Transform::Identity();
   Eigen::Vector3d scale = Eigen::Vector3d::Ones();

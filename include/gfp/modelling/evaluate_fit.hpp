@@ -11,10 +11,9 @@ namespace gfp {
 inline constexpr double kFitGammaPerM2 = 1.0 / (0.005 * 0.005);
 
 /// What the view says for and against a closed surface, whatever method made it. `mahalanobis` stays 0: only the method knows it.
-FitEvidence evaluate_fit(const ObjectView& view, const std::vector<Eigen::Vector3d>& vertices_camera, const std::vector<Triangle>& triangles);
-
-/// Marks vertices that the camera sees and that lie on data (kVertexObserved); bits of the other kinds stay as they are.
-void mark_observed(const ObjectView& view, const std::vector<Eigen::Vector3d>& vertices_camera, const std::vector<Triangle>& triangles,
-                   std::vector<std::uint8_t>& states);
+/// @param states  one a vertex, or empty: gets kVertexObserved where the camera sees the vertex and it lies on data; bits of the
+///                other kinds stay as they are.
+FitEvidence evaluate_fit(const ObjectView& view, const std::vector<Eigen::Vector3d>& vertices_camera, const std::vector<Triangle>& triangles,
+                         std::vector<std::uint8_t>& states);
 
 }  // namespace gfp

@@ -7,7 +7,7 @@
 namespace gfp {
 
 struct ModellingOptions {
-  int max_iterations = 8;         ///< Semi-implicit steps of the contour; 0 keeps the placed shape.
+  int max_iterations = 6;         ///< Semi-implicit steps of the contour; 0 keeps the placed shape.
   double membrane_weight = 0.4;   ///< lc of ALGORITHM 2.
   double plate_weight = 1.0;      ///< lb of ALGORITHM 2.
   double symmetry_weight = 0.3;   ///< Of mirrored targets on the hidden side.

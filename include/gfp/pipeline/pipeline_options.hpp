@@ -18,7 +18,7 @@ namespace gfp {
 
 /// How much work one object's fit may be.
 struct FitBudgetOptions {
-  int max_contours = 3;           ///< Placements, over all hypotheses, that get a contour: those of least cost.
+  int max_contours = 2;           ///< Placements, over all hypotheses, that get a contour: those of least cost.
   int search_every = 30;          ///< Every so many fits of a tracked object all classes are searched again; 1: always.
   double warm_cost_slack = 0.25;  ///< A tracked fit whose cost grew by more than this is searched again at once.
 };

@@ -10,7 +10,7 @@
 namespace gfp {
 
 struct RecognitionOptions {
-  int max_hypotheses = 4;        ///< Classes that registration tries, besides the superquadric.
+  int max_hypotheses = 6;        ///< Primitives in a stable pose that registration tries.
   std::string only_class;        ///< Non-empty: the class is known (`--class`).
 };
 

@@ -11,6 +11,7 @@ namespace gfp {
 /// Where a primitive stands, how large it is and which of its shapes it has; `cost` compares placements of one object.
 struct Placement {
   PrimitivePtr primitive;
+  int hypothesis = 0;                            ///< Which of the given hypotheses it is a placement of.
   Transform T_camera_object = Transform::Identity();
   Eigen::Vector3d size_m = Eigen::Vector3d::Ones();
   std::vector<double> modes;                     ///< Coefficients in standard deviations.

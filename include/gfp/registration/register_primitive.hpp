@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "gfp/memory/object_view.hpp"
@@ -9,10 +10,10 @@
 namespace gfp {
 
 struct RegistrationOptions {
-  int yaw_steps = 24;          ///< Of the search; fewer where the class is symmetric.
-  int keep = 3;                ///< Placements that are refined fully.
-  int max_iterations = 14;     ///< Of the refinement.
-  int sample_pixels = 700;    ///< Object pixels used in the refinement.
+  int yaw_steps = 12;          ///< Of the search, halved beside the best; fewer where the class is symmetric.
+  int keep = 3;                ///< Placements, over all hypotheses, that are refined fully.
+  int max_iterations = 12;     ///< Of the refinement.
+  int sample_pixels = 700;     ///< Object pixels used in the refinement.
 };
 
 template <class Visitor>
@@ -23,7 +24,11 @@ void visit_fields(RegistrationOptions& o, Visitor&& field) {
   field("sample_pixels", o.sample_pixels, 100, 100'000);
 }
 
-/// The `robust` registration (ALGORITHM 1): visible part against visible part in the image. Best placement first; never empty.
+/// The `robust` registration (ALGORITHM 1): visible part against visible part in the image, all hypotheses of one object against each
+/// other. Best placement first, at most `keep`; hypotheses that fall far behind have none. Empty only where `hypotheses` is.
+std::vector<Placement> register_hypotheses(const ObjectView& view, std::span<const Hypothesis> hypotheses, const RegistrationOptions& options = {});
+
+/// The same for one class. Never empty.
 std::vector<Placement> register_primitive(const ObjectView& view, const Hypothesis& hypothesis, const RegistrationOptions& options = {});
 
 }  // namespace gfp

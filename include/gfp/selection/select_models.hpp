@@ -22,6 +22,9 @@ void visit_fields(SelectionOptions& o, Visitor&& field) {
   field("context_weight", o.context_weight, 0.0, 10.0);
 }
 
+/// Whether a fit without a class could still matter beside these: even a flawless one pays for its freedom. True where there are none.
+bool unknown_may_win(const std::vector<Candidate>& candidates);
+
 /// Which of its candidates each object is, decided jointly. `candidates[i]` belongs to `views[i]` and is not empty.
 std::vector<ObjectEstimate> select_models(const std::vector<ObjectView>& views, std::vector<std::vector<Candidate>> candidates,
                                           const SelectionOptions& options = {});
