@@ -20,6 +20,12 @@ struct Offset {
   int du, dv;
 };
 
+/// An index with its column and row: divisions are the dear part of walking over neighbours.
+struct Pixel {
+  std::int32_t i;
+  int u, v;
+};
+
 PixelRect bounds_of(const PixelList& pixels, int width) {
   PixelRect box{width, pixels.front() / width, 0, pixels.back() / width + 1};
   for (const auto i : pixels) {
@@ -39,7 +45,7 @@ class Cutter {
       for (const auto i : clusters_[c]) cluster_of_[static_cast<std::size_t>(i)] = static_cast<std::int32_t>(c);
     estimate_normals();
     for (const PixelList& cluster : clusters_)
-      for (const auto i : cluster) open_[static_cast<std::size_t>(i)] = !is_step(i) && !is_crease(i);
+      for (const auto i : cluster) open_[static_cast<std::size_t>(i)] = !is_step(pixel(i)) && !is_crease(pixel(i));
     const auto kept = connected_components(cloud_, open_, open_, {kStepShare * tolerance_, 0.0}, kMinPiece);
     for (const PixelList& pixels : kept) add(pixels);
     grow_back();
@@ -48,6 +54,7 @@ class Cutter {
   }
 
  private:
+  Pixel pixel(std::int32_t i) const { return {i, i % cloud_.width, i / cloud_.width}; }
   float z(std::int32_t i) const { return cloud_.z[static_cast<std::size_t>(i)]; }
   float step_limit(std::int32_t i) const { return kStepShare * tolerance_ * std::max(1.0F, z(i) * z(i)); }
 
@@ -60,28 +67,29 @@ class Cutter {
   }
 
   // The pixel `offset` away where it is in the image and in the same cluster, else -1.
-  std::int32_t same_cluster(std::int32_t i, Offset offset) const {
-    const int u = i % cloud_.width + offset.du, v = i / cloud_.width + offset.dv;
+  std::int32_t same_cluster(const Pixel& p, Offset offset) const {
+    const int u = p.u + offset.du, v = p.v + offset.dv;
     if (u < 0 || v < 0 || u >= cloud_.width || v >= cloud_.height) return -1;
-    const std::int32_t there = v * cloud_.width + u;
-    return cluster_of_[static_cast<std::size_t>(there)] == cluster_of_[static_cast<std::size_t>(i)] ? there : -1;
+    const std::int32_t there = p.i + offset.dv * cloud_.width + offset.du;
+    return cluster_of_[static_cast<std::size_t>(there)] == cluster_of_[static_cast<std::size_t>(p.i)] ? there : -1;
   }
 
   // A step is more than the surface's own slope explains: the depth's second difference across the pixel.
-  bool is_step(std::int32_t i) const {
+  bool is_step(const Pixel& p) const {
+    const std::int32_t i = p.i;
     for (const Offset d : {Offset{1, 0}, Offset{0, 1}}) {
-      const std::int32_t ahead = same_cluster(i, d), behind = same_cluster(i, {-d.du, -d.dv});
+      const std::int32_t ahead = same_cluster(p, d), behind = same_cluster(p, {-d.du, -d.dv});
       if (ahead < 0 || std::abs(z(ahead) - z(i)) <= step_limit(i)) continue;
       if (behind < 0 || std::abs((z(ahead) - z(i)) - (z(i) - z(behind))) > step_limit(i)) return true;
     }
     return false;
   }
 
-  bool is_crease(std::int32_t i) const {
+  bool is_crease(const Pixel& p) const {
     constexpr std::array<Offset, 4> kDirections = {{{kSpan, 0}, {0, kSpan}, {kSpan - 1, kSpan - 1}, {kSpan - 1, 1 - kSpan}}};
     for (const Offset d : kDirections) {
-      const std::int32_t a = same_cluster(i, d), b = same_cluster(i, {-d.du, -d.dv});
-      if (a < 0 || b < 0 || std::abs(z(a) - z(b)) > 4.0F * step_limit(i)) continue;
+      const std::int32_t a = same_cluster(p, d), b = same_cluster(p, {-d.du, -d.dv});
+      if (a < 0 || b < 0 || std::abs(z(a) - z(b)) > 4.0F * step_limit(p.i)) continue;
       const Eigen::Vector3f na = map_.normal(a), nb = map_.normal(b);
       if (!(na.dot(nb) < kCreaseCos)) continue;
       const Eigen::Vector3f between = cloud_.point(static_cast<std::size_t>(a)) - cloud_.point(static_cast<std::size_t>(b));
@@ -106,13 +114,15 @@ class Cutter {
         if (map_.piece[static_cast<std::size_t>(i)] >= 0) frontier.push_back(i);
     while (!frontier.empty()) {
       next.clear();
-      for (const auto i : frontier)
+      for (const auto i : frontier) {
+        const Pixel p = pixel(i);
         for (const Offset d : {Offset{1, 0}, Offset{-1, 0}, Offset{0, 1}, Offset{0, -1}}) {
-          const std::int32_t n = same_cluster(i, d);
+          const std::int32_t n = same_cluster(p, d);
           if (n < 0 || map_.piece[static_cast<std::size_t>(n)] >= 0 || std::abs(z(n) - z(i)) > 2.0F * step_limit(i)) continue;
           map_.piece[static_cast<std::size_t>(n)] = map_.piece[static_cast<std::size_t>(i)];
           next.push_back(n);
         }
+      }
       frontier.swap(next);
     }
   }

@@ -17,14 +17,15 @@ class FootSearch {
 
   void run() {
     std::vector<std::int32_t> ring;
-    for (std::int32_t i = 0; i < static_cast<std::int32_t>(classes_.size()); ++i)
-      if (at(i) >= kAbove) visit_neighbours(i, ring);
+    for (int v = 0; v < cloud_.height; ++v)
+      for (int u = 0; u < cloud_.width; ++u)
+        if (at(v * cloud_.width + u) >= kAbove) visit_neighbours(u, v, ring);
     for (int step = 0; step < kReach && !ring.empty(); ++step) {
       std::vector<std::int32_t> joined, next;
       for (const std::int32_t pixel : ring)
         if (stands_out(pixel)) joined.push_back(pixel);
       for (const std::int32_t pixel : joined) at(pixel) = static_cast<std::uint8_t>(at(pixel) - kOnSupport + kAbove);
-      for (const std::int32_t pixel : joined) visit_neighbours(pixel, next);
+      for (const std::int32_t pixel : joined) visit_neighbours(pixel % cloud_.width, pixel / cloud_.width, next);
       ring = std::move(next);
     }
   }
@@ -33,8 +34,8 @@ class FootSearch {
   std::uint8_t& at(std::int32_t pixel) { return classes_[static_cast<std::size_t>(pixel)]; }
 
   /// Neighbours on the support that this pixel is above join `ring`, each once.
-  void visit_neighbours(std::int32_t pixel, std::vector<std::int32_t>& ring) {
-    const int u = pixel % cloud_.width, v = pixel / cloud_.width;
+  void visit_neighbours(int u, int v, std::vector<std::int32_t>& ring) {
+    const std::int32_t pixel = v * cloud_.width + u;
     const auto visit = [&](std::int32_t neighbour) {
       if (at(neighbour) != at(pixel) - kAbove + kOnSupport || seen_[static_cast<std::size_t>(neighbour)]) return;
       seen_[static_cast<std::size_t>(neighbour)] = 1;
@@ -51,18 +52,20 @@ class FootSearch {
     const std::uint8_t on = at(pixel);
     const FlatSurface& surface = supports_.surfaces[static_cast<std::size_t>(on - kOnSupport)];
     const int u = pixel % cloud_.width, v = pixel / cloud_.width;
-    double sum = 0;
+    const Eigen::Vector3f up = surface.up.cast<float>();
+    const float offset = static_cast<float>(surface.camera_height_m) - surface.ground.at(u, v);  // the ground is flat over the window
+    float sum = 0;
     int count = 0;
     for (int y = std::max(0, v - kHalfWindow); y <= std::min(cloud_.height - 1, v + kHalfWindow); ++y) {
       for (int x = std::max(0, u - kHalfWindow); x <= std::min(cloud_.width - 1, u + kHalfWindow); ++x) {
         const std::int32_t other = y * cloud_.width + x;
         if (at(other) != on) continue;
-        sum += surface.height(cloud_, other);
+        sum += up.dot(cloud_.point(static_cast<std::size_t>(other))) + offset;
         ++count;
       }
     }
     const double z = static_cast<double>(cloud_.z[static_cast<std::size_t>(pixel)]);
-    return count >= kLeastReadings && sum > kBandShare * surface.band(z) * count;
+    return count >= kLeastReadings && static_cast<double>(sum) > kBandShare * surface.band(z) * count;
   }
 
   const OrganizedCloud& cloud_;
