@@ -31,6 +31,7 @@ struct Contour {
   std::vector<double> energies;
   int iterations = 0;
   bool settled = false;
+  bool sound = false;  ///< Looked at, and neither folds nor crosses itself.
 };
 
 std::vector<Vector3d> in_frame(const Transform& T_to_from, const std::vector<Vector3d>& points) {
@@ -61,8 +62,8 @@ bool crosses_itself(const std::vector<Vector3d>& vertices, const std::vector<Tri
   return count_self_intersections({vertices, triangles}, 1) > 0;
 }
 
-/// Moves the rest shape onto the data. False where not even the rest shape is free of intersections.
-bool run_contour(const ObjectView& view, const Primitive& primitive, const ModellingOptions& options, Contour& contour) {
+/// Moves the rest shape onto the data. Not sound where not even the rest shape is.
+void run_contour(const ObjectView& view, const Primitive& primitive, const ModellingOptions& options, Contour& contour) {
   const auto& triangles = primitive.topology->triangles;
   const auto solver = contour_solver(primitive, options);
   Eigen::MatrixX3d u = Eigen::MatrixX3d::Zero(static_cast<Eigen::Index>(contour.rest.size()), 3);
@@ -91,9 +92,11 @@ bool run_contour(const ObjectView& view, const Primitive& primitive, const Model
   // Chain of retreats: as much of the local displacement as neither folds nor crosses.
   for (const double share : {1.0, 0.7, 0.4, 0.15, 0.0}) {
     contour.vertices = displaced(contour.rest, u, share);
-    if (!folds(contour.rest, contour.vertices, triangles) && !crosses_itself(contour.vertices, triangles)) return true;
+    if (!folds(contour.rest, contour.vertices, triangles) && !crosses_itself(contour.vertices, triangles)) {
+      contour.sound = true;
+      return;
+    }
   }
-  return false;
 }
 
 /// On the table, not in it and not above it.
@@ -117,7 +120,8 @@ Contour model_shape(const ObjectView& view, const Placement& placement, const Tr
     contour.rest = in_frame(T_support_object, shape(primitive, placement.size_m, modes));
     settle_on_support(view, contour.rest);
     contour.vertices = contour.rest;
-    if (run_contour(view, primitive, options, contour)) break;
+    run_contour(view, primitive, options, contour);
+    if (contour.sound) break;
   }
   settle_on_support(view, contour.vertices);
   return contour;
@@ -142,6 +146,7 @@ FittedModel model_contour(const ObjectView& view, const Placement& placement, co
   model.vertices = in_frame(T_support_object.inverse(), contour.vertices);
   model.energies = std::move(contour.energies);
   model.iterations = contour.iterations;
+  if (contour.sound) model.self_intersections = 0;
   model.converged = contour.settled && placement.converged;
   model.yaw_low_rad = placement.yaw_low_rad;
   model.yaw_high_rad = placement.yaw_high_rad;

@@ -34,8 +34,8 @@ SceneObject describe(ObjectEstimate estimate, const ObjectView& view, ObjectStat
   const auto& filled = object.model.topology->filled_triangles;
   object.volume_material_m3 = signed_volume(mesh);
   object.volume_filled_m3 = filled.empty() ? object.volume_material_m3 : signed_volume({mesh.vertices, filled});
-  object.closed = examine_topology(mesh).closed;
-  object.self_intersections = count_self_intersections(mesh);
+  object.closed = object.model.primitive || examine_topology(mesh).closed;  // a primitive's topology was examined when it was loaded
+  object.self_intersections = object.model.self_intersections ? *object.model.self_intersections : count_self_intersections(mesh);
   return object;
 }
 

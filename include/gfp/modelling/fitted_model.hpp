@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -48,6 +49,7 @@ struct FittedModel {
   Eigen::Matrix<double, 6, 6> pose_covariance = Eigen::Matrix<double, 6, 6>::Zero();  ///< x y z rx ry rz.
   double yaw_low_rad = 0, yaw_high_rad = 0;
   FitEvidence evidence;
+  std::optional<int> self_intersections;            ///< Where the method counted them itself.
   std::vector<double> energies;                     ///< Per contour iteration (Fig. 6), J/J0-free units; may be empty.
   int iterations = 0;
   bool converged = false;
