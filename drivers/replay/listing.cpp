@@ -9,6 +9,7 @@
 #include <set>
 
 #include "gfp/frame/png.hpp"
+#include "replay/fakenect.hpp"
 #include "replay/tum.hpp"
 
 namespace gfp {
@@ -145,7 +146,7 @@ Result<std::vector<ReplayEntry>> list_replay(const fs::path& input) {
   std::error_code error;
   const fs::file_status status = fs::status(input, error);
   if (!fs::exists(status)) return failure(ErrorCode::kNotFound, fmt::format("{}: no such file or folder", input.string()));
-  if (fs::is_directory(status)) return is_tum_folder(input) ? list_tum_folder(input) : list_folder(input);
+  if (fs::is_directory(status)) return is_tum_folder(input) ? list_tum_folder(input) : is_fakenect_folder(input) ? list_fakenect_folder(input) : list_folder(input);
   if (!fs::is_regular_file(status)) return failure(ErrorCode::kUnsupported, fmt::format("{}: neither a file nor a folder", input.string()));
   return list_file(input);
 }

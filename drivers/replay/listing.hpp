@@ -10,7 +10,7 @@
 
 namespace gfp {
 
-enum class ReplayFormat { kPcd, kPclzf, kPng };
+enum class ReplayFormat { kPcd, kPclzf, kPng, kFakenect };
 
 /// The files of one frame; not read yet.
 struct ReplayEntry {
@@ -22,7 +22,7 @@ struct ReplayEntry {
   double depth_scale_m = 0.001;       ///< The format's own default.
 };
 
-/// What is to be replayed, in order: a single file, a TUM-style folder, or a folder of files in name order (where a capture
+/// What is to be replayed, in order: a single file, a TUM-style folder, a folder that libfreenect recorded, or a folder of files in name order (where a capture
 /// is there as .pclzf and as .pcd of the same name, only the first is taken).
 /// Errors: kNotFound, kUnsupported (a file of no known type, a folder without any), kCorruptData, kTooLarge, kIo.
 Result<std::vector<ReplayEntry>> list_replay(const std::filesystem::path& input);

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "gfp/frame/png.hpp"
+#include "replay/fakenect.hpp"
 #include "replay/fit_pinhole.hpp"
 #include "replay/pcd.hpp"
 #include "replay/pclzf.hpp"
@@ -80,6 +81,16 @@ Result<void> load_png(const ReplayEntry& entry, const ReplayOptions& options, Lo
   if (!depth) return pass_on(depth.error());
   loaded.frame.depth = {std::move(*depth), *scale};
   if (!entry.color.empty()) add_color(loaded, read_png_color(entry.color));
+  return choose_camera(loaded, options, std::nullopt);
+}
+
+/// Kept unregistered, as the Kinect saw it: depth from its infrared camera, colour from the other one.
+Result<void> load_fakenect(const ReplayEntry& entry, const ReplayOptions& options, LoadedFrame& loaded) {
+  static const KinectDepthTable kTable = kinect_depth_table();
+  const Result<Image<std::uint16_t>> raw = read_fakenect_raw(entry.depth);
+  if (!raw) return pass_on(raw.error());
+  loaded.frame.depth = depth_of_raw(*raw, kTable);
+  if (!entry.color.empty()) add_color(loaded, read_fakenect_color(entry.color));
   return choose_camera(loaded, options, std::nullopt);
 }
 
@@ -158,7 +169,8 @@ Result<LoadedFrame> load_frame(const ReplayEntry& entry, const ReplayOptions& op
   if (options.camera) loaded.frame.T_world_sensor = options.camera->T_world_sensor;
   const Result<void> read = entry.format == ReplayFormat::kPcd     ? load_pcd(entry, options, loaded)
                             : entry.format == ReplayFormat::kPclzf ? load_pclzf(entry, options, loaded)
-                                                                   : load_png(entry, options, loaded);
+                            : entry.format == ReplayFormat::kPng   ? load_png(entry, options, loaded)
+                                                                   : load_fakenect(entry, options, loaded);
   if (!read) return pass_on(read.error());
   return loaded;
 }

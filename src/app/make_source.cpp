@@ -3,6 +3,9 @@
 #include <fmt/format.h>
 
 #include "config/camera_file.hpp"
+#ifdef GFP_HAS_FREENECT
+#include "freenect/freenect_source.hpp"
+#endif
 #include "replay/replay_source.hpp"
 #include "synthetic/synthetic_source.hpp"
 
@@ -30,12 +33,29 @@ Result<std::unique_ptr<FrameSource>> make_synthetic(const SensorConfig& sensor) 
   return std::unique_ptr<FrameSource>(std::make_unique<SyntheticSource>(options));
 }
 
+#ifdef GFP_HAS_FREENECT
+Result<std::unique_ptr<FrameSource>> make_freenect(const SensorConfig& sensor) {
+  FreenectOptions options = sensor.freenect;
+  options.sensor = sensor.name;
+  options.folder = sensor.input;
+  if (!sensor.camera.empty()) {
+    auto camera = config::load_camera(sensor.camera);
+    if (!camera) return tl::unexpected(camera.error());
+    options.camera = std::move(*camera);
+  }
+  return make_freenect_source(std::move(options));
+}
+#endif
+
 }  // namespace
 
 Result<std::unique_ptr<FrameSource>> make_source(const SensorConfig& sensor) {
   if (sensor.driver == "replay") return make_replay(sensor);
   if (sensor.driver == "synthetic") return make_synthetic(sensor);
-  return failure(ErrorCode::kUnsupported, fmt::format("sensor {}: driver = {}, expected synthetic or replay", sensor.name, sensor.driver));
+#ifdef GFP_HAS_FREENECT
+  if (sensor.driver == "freenect") return make_freenect(sensor);
+#endif
+  return failure(ErrorCode::kUnsupported, fmt::format("sensor {}: driver = {}, which this build has not", sensor.name, sensor.driver));
 }
 
 }  // namespace gfp

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "freenect/freenect_options.hpp"
 #include "gfp/core/error.hpp"
 #include "gfp/core/fields.hpp"
 #include "gfp/frame/run_source.hpp"
@@ -18,22 +19,24 @@ namespace gfp {
 struct SensorConfig {
   std::string name = "camera";      ///< [a-z0-9_]+, unique.
   std::string driver = "synthetic";
-  std::string input;                ///< File or folder that `replay` plays.
+  std::string input;                ///< File or folder that `replay` plays; of `freenect` a recorded folder instead of a device.
   std::string camera;               ///< Camera file, or `fx,fy,cx,cy`; empty: what the driver knows by itself.
   SourceOptions source;             ///< Timeouts and reconnection.
   ReplayOptions replay;             ///< Of the driver of that name; its `sensor` and `camera` are the ones above.
   SyntheticOptions synthetic;       ///< Likewise.
+  FreenectOptions freenect;         ///< Likewise; its `folder` is `input`.
 };
 
 template <class Visitor>
 void visit_fields(SensorConfig& o, Visitor&& field) {
   field("name", o.name);
-  field("driver", o.driver, OneOf{{"synthetic", "replay"}});
+  field("driver", o.driver, OneOf{{"synthetic", "replay", "freenect"}});
   field("input", o.input);
   field("camera", o.camera);
   field.section("source", o.source);
   field.section("replay", o.replay);
   field.section("synthetic", o.synthetic);
+  field.section("freenect", o.freenect);
 }
 
 struct LogOptions {
