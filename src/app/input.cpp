@@ -2,6 +2,10 @@
 
 #include <utility>
 
+#ifdef GFP_HAS_OPENNI2
+#include "openni2/openni2_source.hpp"
+#endif
+
 namespace gfp {
 namespace {
 
@@ -12,9 +16,24 @@ std::string stem_of(const std::filesystem::path& path) {
   return stem.empty() || stem == "." || stem == ".." ? "input" : stem;
 }
 
+Result<Input> open_oni(const std::string& name, [[maybe_unused]] const InputOptions& options) {
+#ifdef GFP_HAS_OPENNI2
+  OpenNi2Options oni;
+  oni.uri = name;
+  oni.fast = oni.frame_time = true;
+  oni.camera = options.camera;
+  auto source = make_openni2_source(oni);
+  if (auto opened = source->open(); !opened) return tl::unexpected(opened.error());
+  return Input{name, stem_of(name), std::move(source)};
+#else
+  return failure(ErrorCode::kUnsupported, name + ": .oni files need OpenNI2, which this build has not");
+#endif
+}
+
 }  // namespace
 
 Result<Input> open_input(const std::string& name, const InputOptions& options) {
+  if (name.ends_with(".oni")) return open_oni(name, options);
   ReplayOptions replay;
   replay.rate_hz = 0;
   replay.frame_time = true;
@@ -24,7 +43,8 @@ Result<Input> open_input(const std::string& name, const InputOptions& options) {
   auto source = open_replay(name, replay);
   if (!source) return tl::unexpected(source.error());
   if (auto opened = (*source)->open(); !opened) return tl::unexpected(opened.error());
-  return Input{name, stem_of(name), std::move(*source)};
+  const ReplaySource* const opened_source = source->get();
+  return Input{name, stem_of(name), std::move(*source), opened_source};
 }
 
 }  // namespace gfp

@@ -22,10 +22,16 @@ struct InputOptions {
 struct Input {
   std::string name;                      ///< As the user gave it.
   std::string stem;                      ///< For the names of what is made of it.
-  std::unique_ptr<ReplaySource> source;  ///< Open.
+  std::unique_ptr<FrameSource> source;   ///< Open.
+  const ReplaySource* replay = nullptr;  ///< The same, where it is one.
+
+  bool has_many_frames() const { return replay == nullptr || replay->frames() > 1; }
+  /// How the last frame came to be; of what is no replay, nothing is to be said.
+  FrameReport report() const { return replay != nullptr ? replay->report() : FrameReport{}; }
 };
 
-/// Opens a file or folder (DESIGN, `gfp fit INPUT`). Errors: as open_replay(); they name the file.
+/// Opens a file or folder (DESIGN, `gfp fit INPUT`). Errors: as open_replay(), for .oni as make_openni2_source(), and kUnsupported
+/// where this build has no OpenNI2; they name the file.
 Result<Input> open_input(const std::string& name, const InputOptions& options);
 
 }  // namespace gfp

@@ -6,23 +6,32 @@
 #ifdef GFP_HAS_FREENECT
 #include "freenect/freenect_source.hpp"
 #endif
+#ifdef GFP_HAS_OPENNI2
+#include "openni2/openni2_source.hpp"
+#endif
 #include "replay/replay_source.hpp"
 #include "synthetic/synthetic_source.hpp"
 
 namespace gfp {
 namespace {
 
+/// Fills in what a sensor says beside its driver's section: its name, and its camera where one is given.
+template <class Options>
+Result<Options> common_options(const SensorConfig& sensor, Options options) {
+  options.sensor = sensor.name;
+  if (sensor.camera.empty()) return options;
+  auto camera = config::load_camera(sensor.camera);
+  if (!camera) return tl::unexpected(camera.error());
+  options.camera = std::move(*camera);
+  return options;
+}
+
 Result<std::unique_ptr<FrameSource>> make_replay(const SensorConfig& sensor) {
   if (sensor.input.empty())
     return failure(ErrorCode::kInvalidArgument, fmt::format("sensor {}: input is empty, expected the file or folder to replay", sensor.name));
-  ReplayOptions options = sensor.replay;
-  options.sensor = sensor.name;
-  if (!sensor.camera.empty()) {
-    auto camera = config::load_camera(sensor.camera);
-    if (!camera) return tl::unexpected(camera.error());
-    options.camera = std::move(*camera);
-  }
-  auto source = open_replay(sensor.input, options);
+  const auto options = common_options(sensor, sensor.replay);
+  if (!options) return tl::unexpected(options.error());
+  auto source = open_replay(sensor.input, *options);
   if (!source) return tl::unexpected(source.error());
   return std::unique_ptr<FrameSource>(std::move(*source));
 }
@@ -35,15 +44,19 @@ Result<std::unique_ptr<FrameSource>> make_synthetic(const SensorConfig& sensor) 
 
 #ifdef GFP_HAS_FREENECT
 Result<std::unique_ptr<FrameSource>> make_freenect(const SensorConfig& sensor) {
-  FreenectOptions options = sensor.freenect;
-  options.sensor = sensor.name;
-  options.folder = sensor.input;
-  if (!sensor.camera.empty()) {
-    auto camera = config::load_camera(sensor.camera);
-    if (!camera) return tl::unexpected(camera.error());
-    options.camera = std::move(*camera);
-  }
-  return make_freenect_source(std::move(options));
+  auto options = common_options(sensor, sensor.freenect);
+  if (!options) return tl::unexpected(options.error());
+  options->folder = sensor.input;
+  return make_freenect_source(std::move(*options));
+}
+#endif
+
+#ifdef GFP_HAS_OPENNI2
+Result<std::unique_ptr<FrameSource>> make_openni2(const SensorConfig& sensor) {
+  auto options = common_options(sensor, sensor.openni2);
+  if (!options) return tl::unexpected(options.error());
+  options->uri = sensor.input;
+  return make_openni2_source(std::move(*options));
 }
 #endif
 
@@ -54,6 +67,9 @@ Result<std::unique_ptr<FrameSource>> make_source(const SensorConfig& sensor) {
   if (sensor.driver == "synthetic") return make_synthetic(sensor);
 #ifdef GFP_HAS_FREENECT
   if (sensor.driver == "freenect") return make_freenect(sensor);
+#endif
+#ifdef GFP_HAS_OPENNI2
+  if (sensor.driver == "openni2") return make_openni2(sensor);
 #endif
   return failure(ErrorCode::kUnsupported, fmt::format("sensor {}: driver = {}, which this build has not", sensor.name, sensor.driver));
 }

@@ -34,7 +34,7 @@ void run_input(Input& input, const PrimitiveLibrary& library, const PipelineOpti
       continue;
     }
     PipelineResult result = process_frame(*frame, memory, library, options);
-    visit.frame(*frame, input.source->report(), result);
+    visit.frame(*frame, input.report(), result);
     memory = std::move(result.memory);
   }
 }

@@ -95,7 +95,7 @@ class FitRun {
  private:
   void run(Input& input) {
     const std::string stem = unique_stem(input.stem, stems_);
-    const bool many = arguments_.inputs.size() > 1 || input.source->frames() > 1;
+    const bool many = arguments_.inputs.size() > 1 || input.has_many_frames();
     run_input(input, builtin_library(), job_.pipeline, job_.mask,
               {[&](const Frame& frame, const FrameReport& report, const PipelineResult& result) { show(input.name, stem, many, frame, report, result); },
                [&](const Error& error) { status_.fail(std::cerr, input.name, error); }});
@@ -142,7 +142,7 @@ void add_fit_command(CLI::App& app, ExitStatus& status) {
   CLI::App& command = *app.add_subcommand("fit", "Fit closed models and grasps to every object of recorded frames");
   const auto arguments = std::make_shared<FitArguments>();  // lives as long as the callback that reads it
   PipelineOptions& pipeline = arguments->pipeline;
-  command.add_option("INPUT", arguments->inputs, "Organised .pcd, .pclzf, 16-bit depth .png, or a folder of them (TUM-style too)")->required();
+  command.add_option("INPUT", arguments->inputs, "Organised .pcd, .pclzf, 16-bit depth .png, .oni, or a folder: of these, TUM-style, or recorded by libfreenect")->required();
   command.add_option("--profile", pipeline.profile, "What the stages do")->capture_default_str();
   command.add_option("--method", pipeline.method, "How objects are modelled")->capture_default_str();
   command.add_option("--class", pipeline.recognition.only_class, "The objects' class, where it is known");

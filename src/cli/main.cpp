@@ -18,6 +18,7 @@ int run(int argc, char** argv) {
   gfp::add_eval_command(app, status);
   gfp::add_primitive_command(app, status);
   gfp::add_config_command(app, status);
+  gfp::add_devices_command(app, status);
   gfp::add_echo_command(app, status);
   gfp::add_sub_command(app, status);
   try {

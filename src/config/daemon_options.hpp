@@ -9,6 +9,7 @@
 #include "gfp/core/fields.hpp"
 #include "gfp/frame/run_source.hpp"
 #include "gfp/pipeline/pipeline_options.hpp"
+#include "openni2/openni2_options.hpp"
 #include "publish/publish_options.hpp"
 #include "replay/replay_options.hpp"
 #include "synthetic/synthetic_options.hpp"
@@ -19,24 +20,27 @@ namespace gfp {
 struct SensorConfig {
   std::string name = "camera";      ///< [a-z0-9_]+, unique.
   std::string driver = "synthetic";
-  std::string input;                ///< File or folder that `replay` plays; of `freenect` a recorded folder instead of a device.
+  std::string input;                ///< File or folder that `replay` plays; of `freenect` a recorded folder instead of a
+                                    ///< device; of `openni2` a device's URI or an .oni file.
   std::string camera;               ///< Camera file, or `fx,fy,cx,cy`; empty: what the driver knows by itself.
   SourceOptions source;             ///< Timeouts and reconnection.
   ReplayOptions replay;             ///< Of the driver of that name; its `sensor` and `camera` are the ones above.
   SyntheticOptions synthetic;       ///< Likewise.
   FreenectOptions freenect;         ///< Likewise; its `folder` is `input`.
+  OpenNi2Options openni2;           ///< Likewise; its `uri` is `input`.
 };
 
 template <class Visitor>
 void visit_fields(SensorConfig& o, Visitor&& field) {
   field("name", o.name);
-  field("driver", o.driver, OneOf{{"synthetic", "replay", "freenect"}});
+  field("driver", o.driver, OneOf{{"synthetic", "replay", "freenect", "openni2"}});
   field("input", o.input);
   field("camera", o.camera);
   field.section("source", o.source);
   field.section("replay", o.replay);
   field.section("synthetic", o.synthetic);
   field.section("freenect", o.freenect);
+  field.section("openni2", o.openni2);
 }
 
 struct LogOptions {

@@ -62,6 +62,8 @@ const std::vector<Owner> kOwners{
     {R"(CLI/)", {"src/cli", "src/daemon"}},
     {R"(spdlog/)", {"src/daemon"}},
     {R"(^png\.h$)", {"src/frame"}},
+    {R"(^libfreenect)", {"drivers/freenect"}},
+    {R"(^OniC|^Driver/Oni|^OpenNI)", {"drivers/openni2"}},
     {R"(tbb/)", {"src/pipeline", "src/app", "src/daemon", "src/evaluation", "src/cli"}},
 };
 
