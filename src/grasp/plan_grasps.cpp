@@ -21,8 +21,8 @@ using Eigen::Vector3d;
 constexpr double kTightClearance = 0.4;    // share of the opening clearance where space is tight
 constexpr double kShallowDepth = 0.35;     // share of the pad depth where a finger would meet the table or the palm the object
 constexpr double kMarginLimit = 0.2;       // metres: collision_margin_m looks no farther
-constexpr int kBodyEffort = 360, kEdgeEffort = 360, kWiderEffort = 240;  // looks at the surroundings: the bulk of the time
-constexpr int kWholeCheck = 6;             // what closing the jaw in all depths costs, in such looks
+constexpr int kBodyEffort = 3000, kEdgeEffort = 3000, kWiderEffort = 2000;  // in looks at the palm alone: the bulk of the time
+constexpr int kSceneCheck = 8, kWholeCheck = 48;  // what a look at the surroundings and closing the jaw in all depths cost, likewise
 constexpr double kBesideTheBody = 0.6;     // what a grip is worth that has the centre of mass beside its pads, not between them
 constexpr double kWidestStroke = 0.5;      // metres: a jaw for the question whether the stroke alone is too small
 
@@ -80,9 +80,11 @@ class Planner {
   void close_poses(const std::vector<AntipodalPair>& pairs, int effort, std::size_t enough, std::vector<ClosedGrasp>& closed, int& examined);
   std::string why_none(const PairSearch& search);
   std::optional<ClosedGrasp> try_pose(const JawPose& pose);
-  Obstruction close(ClosedGrasp& grasp, double depth_m);
+  Obstruction close(ClosedGrasp& grasp, double depth_m, bool may_align = true);
+  bool align(ClosedGrasp& grasp, double depth_m);
   Obstruction obstruction(const ClosedGrasp& grasp, double sweep_m);
   bool hopeless(const JawPose& pose) const;
+  bool palm_meets(const JawPose& pose) const;
   bool blocked(const JawPose& pose);
   double least_depth(const JawPose& pose) const;
   void value(ClosedGrasp& grasp, const std::vector<ShapeDraw>& draws);
@@ -127,6 +129,11 @@ bool Planner::hopeless(const JawPose& pose) const {
   return std::any_of(extremes_.begin(), extremes_.end(), [&](const Vector3d& point) {
     return ((boxes.palm.T_box_world * point).cwiseAbs() - boxes.palm.half).maxCoeff() < 0;
   });
+}
+
+/// Whether even the shallowest grip puts the palm into the object: contacts farther in than the fingers are long.
+bool Planner::palm_meets(const JawPose& pose) const {
+  return bvh_.meets(gripper_boxes(gripper_, tcp_frame(pose, least_depth(pose)), pose.width_m, 0).palm);
 }
 
 /// Whether the shallowest grip meets table, neighbours or obstacles even with the jaw as little open as it may be.
@@ -175,7 +182,7 @@ Obstruction Planner::obstruction(const ClosedGrasp& grasp, double sweep_m) {
 }
 
 /// Closes the jaw where `grasp` stands, on the fitted mesh, and centres it between its touches.
-Obstruction Planner::close(ClosedGrasp& grasp, double depth_m) {
+Obstruction Planner::close(ClosedGrasp& grasp, double depth_m, bool may_align) {
   const Obstruction met = obstruction(grasp, options_.pregrasp_offset_m);
   if (met != Obstruction::kNone) {
     obstructed_.push_back(grasp);
@@ -196,8 +203,26 @@ Obstruction Planner::close(ClosedGrasp& grasp, double depth_m) {
     contacts[i] = {grasp.T_camera_tcp * grasp.touches[i].point, grasp.T_camera_tcp.linear() * grasp.touches[i].normal, gripper_.friction, gripper_.torsion_m};
   grasp.quality = grasp_quality(contacts, scale_);
   if (grasp.quality.force_closure && grasp.quality.epsilon >= options_.min_epsilon) return Obstruction::kNone;
+  if (may_align && align(grasp, depth_m)) return Obstruction::kNone;
   slips_ = true;
   return Obstruction::kSlips;
+}
+
+/// Turns a jaw that slipped square to what its pads met, and closes it again: long pads on faces that lean a few degrees touch
+/// at opposite ends, where a normal of one triangle had seemed good enough.
+bool Planner::align(ClosedGrasp& grasp, double depth_m) {
+  constexpr double kLeastTurn = 0.9999, kMostTurn = 0.85;  // cosines: under a degree changes nothing, over 30 it is another grasp
+  const Vector3d axis = (grasp.T_camera_tcp.linear() * (grasp.touches[1].normal - grasp.touches[0].normal)).normalized();
+  const double cosine = axis.dot(grasp.pose.axis);
+  if (!(cosine < kLeastTurn && cosine > kMostTurn)) return false;
+  ClosedGrasp aligned = grasp;
+  aligned.pose.axis = axis;
+  aligned.pose.approach = (grasp.pose.approach - axis * axis.dot(grasp.pose.approach)).normalized();
+  if (aligned.pose.approach.dot(up_) > 0.05) return false;  // it must not come from below
+  aligned.T_camera_tcp = tcp_frame(aligned.pose, depth_m);
+  if (close(aligned, depth_m, false) != Obstruction::kNone) return false;
+  grasp = aligned;
+  return true;
 }
 
 void Planner::value(ClosedGrasp& grasp, const std::vector<ShapeDraw>& draws) {
@@ -259,6 +284,8 @@ void Planner::close_poses(const std::vector<AntipodalPair>& pairs, int effort, s
     if (std::any_of(closed.begin(), closed.end(), [&](const ClosedGrasp& other) { return alike(*pose, other.pose, 0.010, 0.94); })) continue;
     if (hopeless(*pose)) continue;
     --effort;
+    if (palm_meets(*pose)) continue;
+    effort -= kSceneCheck;
     if (blocked(*pose)) continue;
     effort -= kWholeCheck;
     if (auto grasp = try_pose(*pose)) closed.push_back(*grasp);

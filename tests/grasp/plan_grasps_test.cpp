@@ -5,6 +5,7 @@
 #include <cmath>
 #include <memory>
 
+#include "gfp/core/random.hpp"
 #include "gfp/grasp/clear_of_points.hpp"
 #include "gfp/grasp/judge_grasp.hpp"
 #include "grasp/gripper_boxes.hpp"
@@ -113,6 +114,19 @@ TEST(PlanGrasps, HoldsAWideCupByItsRim) {
   for (const Grasp& grasp : grasps) {
     EXPECT_LT(grasp.width_m, 0.006);
     EXPECT_LT(grasp.approach.dot(up), -0.3) << "into the mouth";
+  }
+}
+
+// A fit is never quite flat: facets that lean to and fro by some degrees must not make a box or can slip out of long fingers.
+TEST(PlanGrasps, HoldsFacetsThatLean) {
+  for (TriangleMesh mesh : {test::box_mesh({0.26, 0.052, 0.183}, 12), test::cylinder_mesh(0.035, 0.239, 32, 12)}) {
+    Random random(5);
+    for (Vector3d& vertex : mesh.vertices)
+      if (vertex.z() > 0.001) vertex += 0.0007 * Vector3d(random.normal(), random.normal(), random.normal());
+    const FittedModel model = test::fit_of(mesh);
+    const GraspPlan plan = plan_grasps(model, test::table_scene());
+    ASSERT_FALSE(plan.grasps.empty()) << plan.no_grasp_reason;
+    for (const Grasp& grasp : plan.grasps) EXPECT_TRUE(judge_grasp(model.mesh_camera(), grasp, test::table_scene(), Gripper{}).success);
   }
 }
 
@@ -342,7 +356,7 @@ TEST(ShapeUncertainty, LabelsWhatWasSeenAndWhereToLook) {
     if (std::abs(grasp.width_m - 0.06) > 1e-3) continue;
     across = true;
     EXPECT_EQ(grasp.visibility, "one");
-    EXPECT_TRUE(grasp.helpful_view.isApprox(model.T_camera_object.linear() * Vector3d::UnitX(), 1e-6)) << "onto the hidden side, into the object";
+    EXPECT_GT(grasp.helpful_view.dot(model.T_camera_object.linear() * Vector3d::UnitX()), 0.95) << "onto the hidden side, into the object";
   }
   EXPECT_TRUE(across);
 }
