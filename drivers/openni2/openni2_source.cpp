@@ -85,7 +85,7 @@ class OpenNi2Source final : public FrameSource {
     return api_->StreamGetProperty(stream.handle, id, &value, &bytes) == ONI_STATUS_OK && bytes == sizeof(Value);
   }
   static void ONI_CALLBACK_TYPE disconnected(const OniDeviceInfo* device, void* self);
-  static void ONI_CALLBACK_TYPE state_changed(const OniDeviceInfo*, OniDeviceState, void*) {}
+  static void ONI_CALLBACK_TYPE state_changed(const OniDeviceInfo* device, OniDeviceState state, void* self);
   static void ONI_CALLBACK_TYPE connected(const OniDeviceInfo*, void*) {}
 
   OpenNi2Options options_;
@@ -97,7 +97,7 @@ class OpenNi2Source final : public FrameSource {
   std::string device_uri_;
   Stream depth_, color_;
   CameraModel camera_;
-  std::atomic<bool> lost_{false};
+  std::atomic<bool> lost_{false}, ended_{false};
   std::optional<std::uint64_t> frames_left_;  ///< Of a file.
   std::uint64_t to_skip_ = 0;
   std::optional<std::uint64_t> first_us_;
@@ -110,6 +110,12 @@ class OpenNi2Source final : public FrameSource {
 void OpenNi2Source::disconnected(const OniDeviceInfo* device, void* self) {
   auto& source = *static_cast<OpenNi2Source*>(self);
   if (source.device_uri_ == device->uri) source.lost_ = true;
+}
+
+/// Frames that were read ahead may still be waiting when a file says that it is at its end.
+void OpenNi2Source::state_changed(const OniDeviceInfo* device, OniDeviceState state, void* self) {
+  auto& source = *static_cast<OpenNi2Source*>(self);
+  if (source.device_uri_ == device->uri && state == ONI_DEVICE_STATE_EOF) source.ended_ = true;
 }
 
 Result<void> OpenNi2Source::open() {
@@ -134,7 +140,7 @@ Result<void> OpenNi2Source::open_device() {
   api_->DeviceGetInfo(device_, &info);
   device_uri_ = info.uri;
   model_ = fmt::format("{} {}", info.vendor, info.name);
-  lost_ = false;
+  lost_ = ended_ = false;
   OniDeviceCallbacks callbacks{connected, disconnected, state_changed};
   api_->RegisterDeviceCallbacks(&callbacks, this, &callbacks_);
   if (!is_file(options_.uri)) return {};
@@ -234,8 +240,10 @@ Result<Frame> OpenNi2Source::grab(std::chrono::milliseconds timeout) {
     const auto left_ms = std::chrono::duration_cast<std::chrono::milliseconds>(deadline - monotonic_now()).count();
     if (left_ms <= 0) return failure(ErrorCode::kTimeout, fmt::format("no depth frame within {} ms", timeout.count()));
     int ready = -1;
+    const bool at_end = ended_;
     // In slices: a disconnection does not wake the wait.
     const auto status = api_->WaitForAnyStream(streams.data(), color_.handle != nullptr ? 2 : 1, &ready, static_cast<int>(std::min<std::int64_t>(left_ms, 50)));
+    if (status == ONI_STATUS_TIME_OUT && at_end) return failure(ErrorCode::kEndOfStream, "the recording has come to its end before the frames it promised");
     if (status == ONI_STATUS_TIME_OUT) continue;
     if (status != ONI_STATUS_OK) return failure(ErrorCode::kDeviceLost, fmt::format("{}: {}", device_uri_, api_->why()));
     int newer = -1;  // where both are ready, colour first: it may belong to this depth

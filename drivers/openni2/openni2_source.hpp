@@ -13,7 +13,7 @@ namespace gfp {
 ///
 /// Depth in whole millimetres; where the device can, depth is registered to colour, and the camera then is the colour camera's as
 /// far as OpenNI2 tells it: the fields of view. Mirrored streams are turned back. Colour is the latest within 50 ms.
-/// A file delivers exactly as many frames as it says it has, from `first_frame` on.
+/// A file delivers as many frames as it says it has, from `first_frame` on, fewer only where it ends before.
 /// open() errors: kDeviceLost (no such device), kUnsupported (no library), kNotFound and kCorruptData (a file), kInvalidArgument.
 /// grab() errors: kTimeout, kDeviceLost, kCorruptFrame (of another size than the stream's), kEndOfStream.
 std::unique_ptr<FrameSource> make_openni2_source(OpenNi2Options options);

@@ -1,0 +1,146 @@
+// One synthetic scene through every way that a Kinect's frames may take: the same objects come out.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "app/builtin_library.hpp"
+#include "app/input.hpp"
+#include "gfp/evaluation/metrics.hpp"
+#include "gfp/pipeline/process_frame.hpp"
+#include "openni2/openni2_source.hpp"
+#include "support/fakenect_folder.hpp"
+#include "synthetic/synthetic_source.hpp"
+
+namespace gfp {
+namespace {
+
+using namespace std::chrono_literals;
+namespace fs = std::filesystem;
+
+constexpr std::uint64_t kSeed = 4;
+constexpr int kObjects = 3;
+
+SyntheticOptions scene_options() {
+  SyntheticOptions options;
+  options.seed = kSeed;
+  options.table.objects = kObjects;
+  options.rate_hz = 0;
+  options.frames = 1;
+  options.frame_time = true;
+  return options;
+}
+
+Frame first_frame(FrameSource& source) {
+  const auto opened = source.open();
+  EXPECT_TRUE(opened) << opened.error().what;
+  auto frame = source.grab(10s);
+  EXPECT_TRUE(frame) << frame.error().what;
+  return frame ? std::move(*frame) : Frame{};
+}
+
+Scene scene_of(const Frame& frame) { return process_frame(frame, {}, builtin_library()).scene; }
+
+/// What is compared: an object's class and how well it fills its truth.
+struct Seen {
+  std::string class_name;
+  double iou_filled = 0;
+};
+
+class SensorPaths : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    SyntheticSource source(scene_options());
+    frame_ = new Frame(first_frame(source));
+    truth_ = new FrameTruth(source.truth(0));
+    shapes_ = new std::vector<std::shared_ptr<const TruthShape>>;
+    for (const PlacedMesh& object : source.scene().objects) {
+      auto shape = make_truth_shape(object.name, object.class_name, object.mesh);
+      ASSERT_TRUE(shape) << shape.error().what;
+      shapes_->push_back(std::make_shared<const TruthShape>(std::move(*shape)));
+    }
+    direct_ = new std::vector<Seen>(compare(scene_of(*frame_)));
+  }
+  static void TearDownTestSuite() {
+    delete frame_;
+    delete truth_;
+    delete shapes_;
+    delete direct_;
+  }
+
+  /// Per true object, the fit that lies nearest.
+  static std::vector<Seen> compare(const Scene& scene) {
+    std::vector<Seen> seen;
+    for (std::size_t i = 0; i < shapes_->size(); ++i) {
+      const auto centre = [](const TriangleMesh& mesh) { return bounds(mesh.vertices).centre(); };
+      const Eigen::Vector3d place = truth_->T_camera_object[i] * centre((*shapes_)[i]->mesh);
+      const SceneObject* nearest = nullptr;
+      double least = 0.05;
+      for (const SceneObject& object : scene.objects) {
+        const double distance = (centre(object.model.mesh_camera()) - place).norm();
+        if (distance < least) least = distance, nearest = &object;
+      }
+      if (nearest == nullptr) {
+        seen.push_back({"missing", 0});
+        continue;
+      }
+      const TruthView view{(*shapes_)[i], truth_->T_camera_object[i], std::vector<std::uint8_t>((*shapes_)[i]->samples.points.size(), 1)};
+      seen.push_back({nearest->model.class_name, measure_fit(view, nearest->model, {}).iou_filled});
+    }
+    return seen;
+  }
+
+  static void expect_same_objects(const Frame& frame, const char* path) {
+    const Scene scene = scene_of(frame);
+    const std::vector<Seen> seen = compare(scene);
+    for (std::size_t i = 0; i < seen.size(); ++i) {
+      EXPECT_EQ(seen[i].class_name, (*direct_)[i].class_name) << path << ", object " << i;
+      EXPECT_NEAR(seen[i].iou_filled, (*direct_)[i].iou_filled, 0.03) << path << ", object " << i;
+    }
+  }
+
+  fs::path temporary(const char* name) const { return fs::path(::testing::TempDir()) / name; }
+
+  static inline const Frame* frame_ = nullptr;
+  static inline const FrameTruth* truth_ = nullptr;
+  static inline std::vector<std::shared_ptr<const TruthShape>>* shapes_ = nullptr;
+  static inline const std::vector<Seen>* direct_ = nullptr;
+};
+
+TEST_F(SensorPaths, TheSceneIsSeenAtAll) {
+  for (const Seen& object : *direct_) EXPECT_GT(object.iou_filled, 0.5) << object.class_name;
+}
+
+TEST_F(SensorPaths, FakenectFolder) {
+  const fs::path folder = temporary("sensor_paths_fakenect");
+  fs::remove_all(folder);
+  test::write_fakenect_folder(folder, {*frame_});
+  InputOptions options;
+  options.camera = CameraFile{default_kinect_camera(), {}, Transform::Identity()};
+  const auto input = open_input(folder.string(), options);
+  ASSERT_TRUE(input) << input.error().what;
+  expect_same_objects(first_frame(*input->source), "fakenect");
+  fs::remove_all(folder);
+}
+
+TEST_F(SensorPaths, OpenNi2LiveAndRecorded) {
+  const fs::path file = temporary("sensor_paths.oni");
+  fs::remove(file);
+  OpenNi2Options options;
+  options.library = GFP_OPENNI2_LIBRARY;
+  options.uri = "gfp-synthetic:rate_hz=5,seed=" + std::to_string(kSeed) + ",objects=" + std::to_string(kObjects);
+  options.record = file.string();
+  {
+    const auto live = make_openni2_source(options);
+    expect_same_objects(first_frame(*live), "live");
+    for (int i = 0; i < 2; ++i) EXPECT_TRUE(live->grab(10s));
+  }
+  options.uri = file.string();
+  options.record.clear();
+  options.fast = options.frame_time = true;
+  const auto recorded = make_openni2_source(options);
+  expect_same_objects(first_frame(*recorded), "recorded");
+  fs::remove(file);
+}
+
+}  // namespace
+}  // namespace gfp
