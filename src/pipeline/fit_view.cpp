@@ -15,6 +15,7 @@ namespace gfp {
 namespace {
 
 constexpr double kContourGain = 0.2;  ///< Cost by which a contour may improve one placement more than another.
+constexpr double kToldOtherwise = -20.0;  ///< Log prior of "none of the classes" beside what it always is, where the class was told.
 constexpr const char* kSuperquadric = "superquadric";
 
 /// The contour is the dear part: only the best placements get one, and those that it may still bring to the front.
@@ -37,7 +38,7 @@ std::vector<Candidate> search(const ObjectView& view, const PrimitiveLibrary& li
   auto candidates = place_and_contour(view, hypotheses, options.budget.max_contours, options, timings);
   if (unknown_may_win(candidates)) {
     auto superquadric = timings.measure(kSuperquadric, [&] { return fit_superquadric(view); });
-    candidates.push_back({std::move(superquadric), 0.0});  // what `unknown` is worth beforehand is for selection to say
+    candidates.push_back({std::move(superquadric), options.recognition.only_class.empty() ? 0.0 : kToldOtherwise});
   }
   return candidates;
 }

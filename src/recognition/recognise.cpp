@@ -54,9 +54,9 @@ void normalise(std::vector<Belief>& beliefs) {
 std::vector<Hypothesis> recognise(const ObjectView& view, const PrimitiveLibrary& library, const RecognitionOptions& options) {
   if (view.object_pixels == 0 || library.all().empty()) return {};
   std::vector<Belief> beliefs = believe(view, library);
-  normalise(beliefs);
   if (const auto known = library.of_class(options.only_class); !known.empty())
     std::erase_if(beliefs, [&](const Belief& belief) { return std::find(known.begin(), known.end(), library.all()[static_cast<std::size_t>(belief.primitive)]) == known.end(); });
+  normalise(beliefs);
   std::stable_sort(beliefs.begin(), beliefs.end(), [](const Belief& a, const Belief& b) { return a.log_posterior > b.log_posterior; });
   if (beliefs.size() > static_cast<std::size_t>(options.max_hypotheses)) beliefs.resize(static_cast<std::size_t>(options.max_hypotheses));
 

@@ -20,7 +20,7 @@ int free_parameters(const FittedModel& model) { return model.primitive ? 0 : kUn
 
 double log_evidence(const Candidate& candidate) {
   const FitEvidence& evidence = candidate.model.evidence;
-  const double prior = candidate.model.primitive ? kDescriptorTrust * candidate.log_prior : kUnknownLogPrior;
+  const double prior = candidate.model.primitive ? kDescriptorTrust * candidate.log_prior : kUnknownLogPrior + candidate.log_prior;
   return prior - kEffectivePixels * evidence.cost - 0.5 * evidence.mahalanobis * evidence.mahalanobis -
          kFreedomPenalty * free_parameters(candidate.model);
 }

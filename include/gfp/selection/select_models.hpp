@@ -10,7 +10,7 @@ namespace gfp {
 /// One fit with what was believed of its class before.
 struct Candidate {
   FittedModel model;
-  double log_prior = 0;
+  double log_prior = 0;  ///< Of its class; of a model without one: beyond what "none of the classes" is always worth.
 };
 
 struct SelectionOptions {
