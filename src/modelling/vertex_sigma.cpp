@@ -13,6 +13,7 @@ using Eigen::Vector3d;
 
 constexpr double kBiasM = 0.0012;         ///< Calibration, quantisation and mixed pixels: does not average out.
 constexpr double kIndependentReadings = 20;
+constexpr double kPosteriorInflation = 1.8;  ///< Real shapes leave their class's modes: calibrated on coverage, as reported by gfp eval.
 constexpr double kCarryLengthM = 0.03;    ///< Over this distance from seen surface the local shape is forgotten.
 
 /// Distance along edges from every vertex to the nearest observed one (Dijkstra), metres; large where nothing is observed.
@@ -73,7 +74,7 @@ std::vector<float> vertex_sigma(const ObjectView& view, const Placement& placeme
     }
     const double forgotten = 1.0 - std::exp(-distance[i] / kCarryLengthM);
     const double local = std::hypot(kBiasM, residual_m * forgotten);
-    sigma[i] = static_cast<float>(std::sqrt(posterior_variance(placement, T_support_object, i, vertices[i], normals[i]) + local * local));
+    sigma[i] = static_cast<float>(std::sqrt(kPosteriorInflation * posterior_variance(placement, T_support_object, i, vertices[i], normals[i]) + local * local));
   }
   return sigma;
 }
