@@ -95,6 +95,7 @@ class PngReader {
       const png_uint_32 height = png_get_image_height(png_, info_);
       for (int pass = 0; pass < passes; ++pass)
         for (png_uint_32 v = 0; v < height; ++v) png_read_row(png_, pixels + v * row_bytes, nullptr);
+      png_read_end(png_, nullptr);  // a file that ends before its end mark was cut
     });
   }
   std::string_view message() const { return session_.message; }
