@@ -75,15 +75,17 @@ function(gfp_test name)
   gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST PROPERTIES ${properties})
 endfunction()
 
-# gfp_use_pcl(<target>): PCL's headers (unpacked by scripts/install-packages) and its runtime libraries.
+# gfp_use_pcl(<target> SOURCES a.cpp... PARTS common kdtree...): PCL's headers (unpacked by scripts/install-packages) for the named files
+# only, and its runtime libraries.
 function(gfp_use_pcl target)
+  cmake_parse_arguments(ARG "" "" "SOURCES;PARTS" ${ARGN})
   set(pcl_dir $ENV{HOME}/.cache/gfp/pcl)
   if(DEFINED ENV{GFP_PCL_DIR})
     set(pcl_dir $ENV{GFP_PCL_DIR})
   endif()
   find_path(GFP_PCL_INCLUDE pcl/point_types.h PATHS ${pcl_dir}/usr/include/pcl-1.13 /usr/include/pcl-1.13 REQUIRED NO_CACHE)
-  target_include_directories(${target} SYSTEM PRIVATE ${GFP_PCL_INCLUDE})
-  foreach(part IN ITEMS common kdtree octree search sample_consensus filters features segmentation registration)
+  set_source_files_properties(${ARG_SOURCES} PROPERTIES COMPILE_OPTIONS "-isystem;${GFP_PCL_INCLUDE};-Wno-array-bounds")  # GCC 12 misreads its unrolled 3-vectors
+  foreach(part IN LISTS ARG_PARTS)
     find_library(GFP_PCL_${part} NAMES libpcl_${part}.so libpcl_${part}.so.1.13 REQUIRED)
     target_link_libraries(${target} PRIVATE ${GFP_PCL_${part}})
   endforeach()

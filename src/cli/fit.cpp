@@ -144,7 +144,7 @@ void add_fit_command(CLI::App& app, ExitStatus& status) {
   PipelineOptions& pipeline = arguments->pipeline;
   command.add_option("INPUT", arguments->inputs, "Organised .pcd, .pclzf, 16-bit depth .png, .oni, or a folder: of these, TUM-style, or recorded by libfreenect")->required();
   command.add_option("--profile", pipeline.profile, "What the stages do")->capture_default_str();
-  command.add_option("--method", pipeline.method, "How objects are modelled")->capture_default_str();
+  command.add_option("--method", pipeline.method, "How objects are modelled; by default as the profile does");
   command.add_option("--class", pipeline.recognition.only_class, "The objects' class, where it is known");
   command.add_option("--camera", arguments->camera, "Camera file (YAML), or fx,fy,cx,cy in pixels");
   command.add_option("--depth-scale", arguments->depth_scale_m, "Metres per unit of 16-bit depth")->check(CLI::Range(1e-6, 1.0));
@@ -154,7 +154,10 @@ void add_fit_command(CLI::App& app, ExitStatus& status) {
   command.add_option("--out", arguments->out, "Folder for <input>_<frame>_<id>.ply, .obj and .glb, camera frame");
   command.add_option("--png", arguments->png, "Picture of the frame with fits and grasps; several frames are numbered");
   command.add_flag("--json", arguments->json, "A JSON line per frame");
-  command.callback([arguments, &status] { fit(*arguments, status); });
+  command.callback([arguments, &status, &command] {
+    if (command.count("--method") == 0 && arguments->pipeline.profile == "paper") arguments->pipeline.method = "gfp_paper";
+    fit(*arguments, status);
+  });
 }
 
 }  // namespace gfp

@@ -14,8 +14,9 @@ using Eigen::Vector3d;
 constexpr double kInferredGrowth = 0.25;  ///< Metres of 1-sigma per metre from the nearest seen vertex.
 constexpr double kInferredBase = 0.003;   ///< Metres: what a guess errs by even beside a seen vertex.
 
-/// Seen: noise and the body's own misfit. Else it grows with the distance to the nearest seen vertex.
-std::vector<float> sigma_of(const std::vector<Vector3d>& vertices, const std::vector<std::uint8_t>& states, double surface_sigma_m) {
+}  // namespace
+
+std::vector<float> sigma_by_distance(const std::vector<Vector3d>& vertices, const std::vector<std::uint8_t>& states, double surface_sigma_m) {
   std::vector<Vector3d> seen;
   for (std::size_t k = 0; k < vertices.size(); ++k)
     if (states[k] & kVertexObserved) seen.push_back(vertices[k]);
@@ -32,6 +33,8 @@ std::vector<float> sigma_of(const std::vector<Vector3d>& vertices, const std::ve
   }
   return sigma;
 }
+
+namespace {
 
 /// Covariance of x y z rx ry rz in the object frame. What the data leave open is held by priors of 50 mm and 1 rad.
 Eigen::Matrix<double, 6, 6> pose_covariance(const SupportedBody& body, const Transform& T_support_object) {
@@ -72,7 +75,7 @@ FittedModel volume_model(const ObjectView& view, const SupportedBody& body) {
   model.size_m = bounds(model.vertices).size();
   const auto vertices_camera = model.mesh_camera().vertices;
   model.evidence = evaluate_fit(view, vertices_camera, model.topology->triangles, model.states);
-  model.sigma_m = sigma_of(model.vertices, model.states, body.surface_sigma_m);
+  model.sigma_m = sigma_by_distance(model.vertices, model.states, body.surface_sigma_m);
   model.pose_covariance = pose_covariance(body, T_support_object);
   return model;
 }

@@ -25,4 +25,8 @@ struct SupportedBody {
 /// where it is below), states, sigma per vertex, evidence and pose covariance (object frame, tangent at the right).
 FittedModel volume_model(const ObjectView& view, const SupportedBody& body);
 
+/// 1-sigma per vertex, metres, where only distances tell: `surface_sigma_m` where observed; elsewhere it grows with the distance to the
+/// nearest observed vertex.
+std::vector<float> sigma_by_distance(const std::vector<Eigen::Vector3d>& vertices, const std::vector<std::uint8_t>& states, double surface_sigma_m);
+
 }  // namespace gfp

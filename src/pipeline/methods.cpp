@@ -9,7 +9,12 @@ namespace {
 
 constexpr std::array kMethods{
     Method{"gfp_robust", &fit_gfp_robust},
+    Method{"gfp_paper", &fit_gfp_paper},
+    Method{"gfp_grid26", &fit_gfp_grid26},
+    Method{"sphere_snake", &fit_sphere_snake_only},
     Method{"superquadric", &fit_superquadric_only},
+    Method{"simple_primitive", &fit_simple_primitive_only},
+    Method{"nearest_instance", &fit_nearest_instance},
 };
 
 std::string joined(const std::vector<std::string>& names) {
@@ -20,7 +25,7 @@ std::string joined(const std::vector<std::string>& names) {
 
 }  // namespace
 
-std::vector<std::string> profile_names() { return {"robust"}; }
+std::vector<std::string> profile_names() { return {"robust", "paper"}; }
 
 std::vector<std::string> method_names() {
   std::vector<std::string> names;

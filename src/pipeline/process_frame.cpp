@@ -8,10 +8,17 @@
 
 #include "gfp/pipeline/fit_view.hpp"
 #include "gfp/scene/remember.hpp"
+#include "gfp/segmentation/segment_cloud_paper.hpp"
 #include "pipeline/plan_scene_grasps.hpp"
 
 namespace gfp {
 namespace {
+
+Segments segment(const OrganizedCloud& cloud, const Frame& frame, const SceneMemory& memory, const PipelineOptions& options) {
+  if (options.profile == "paper") return segment_cloud_paper(cloud, options.segmentation, frame.up_camera, frame.mask);
+  const SupportPlane* last = memory.last_support ? &*memory.last_support : nullptr;
+  return segment_cloud(cloud, options.segmentation, frame.up_camera, last, frame.mask);
+}
 
 std::vector<PixelRect> object_boxes(const Segments& segments) {
   std::vector<PixelRect> boxes;
@@ -137,9 +144,8 @@ void add_objects(Scene& scene, std::vector<Work> work, const Segments& segments,
 
 PipelineResult process_frame(const Frame& frame, const SceneMemory& memory, const PrimitiveLibrary& library, const PipelineOptions& options) {
   StageTimings timings;
-  const SupportPlane* last = memory.last_support ? &*memory.last_support : nullptr;
   const auto cloud = timings.measure("cloud", [&] { return depth_to_cloud(frame.depth, frame.camera, options.cloud); });
-  const auto segments = timings.measure("segmentation", [&] { return segment_cloud(cloud, options.segmentation, frame.up_camera, last, frame.mask); });
+  const auto segments = timings.measure("segmentation", [&] { return segment(cloud, frame, memory, options); });
   const auto normals = timings.measure("normals", [&] { return object_normals(cloud, segments, options.normals); });
   const auto views = timings.measure("association", [&] { return associate(segments, cloud, normals, frame, memory, options.memory); });
 

@@ -50,6 +50,19 @@ Json evidence_json(const FitEvidence& evidence) {
           {"cost", evidence.cost}};
 }
 
+/// How a contour ran, and what of it data moved (P27, Fig. 6 of the paper): energies iteration by iteration, the start first.
+Json contour_json(const FittedModel& model) {
+  int controls = 0, moved_controls = 0, moved_regulars = 0;
+  for (const std::uint8_t state : model.states) {
+    const bool control = (state & kVertexControl) != 0, moved = (state & kVertexMoved) != 0;
+    controls += control ? 1 : 0;
+    moved_controls += control && moved ? 1 : 0;
+    moved_regulars += !control && moved ? 1 : 0;
+  }
+  return {{"iterations", model.iterations}, {"converged", model.converged}, {"energies", model.energies}, {"controls", controls},
+          {"moved_controls", moved_controls}, {"moved_regulars", moved_regulars}, {"frozen_controls", controls - moved_controls}};
+}
+
 const char* status_name(ObjectStatus status) {
   switch (status) {
     case ObjectStatus::kAdded: return "added";
@@ -115,6 +128,7 @@ nlohmann::ordered_json object_json(const SceneObject& object, const std::string&
                {"observed_fraction", observed_fraction(model.states)},
                {"sigma_median_mm", median_sigma_mm(model.sigma_m)},
                {"evidence", evidence_json(model.evidence)}};
+  if (!model.energies.empty()) json["evidence"]["contour"] = contour_json(model);
   json["mesh"] = mesh_file.empty() ? Json(nullptr) : Json(mesh_file);
   json["no_grasp_reason"] = object.grasps.no_grasp_reason.empty() ? Json(nullptr) : Json(object.grasps.no_grasp_reason);
   json["grasps"] = std::move(grasps);

@@ -84,6 +84,24 @@ TEST_F(FitView, FollowsASuperquadricAsOne) {
   EXPECT_EQ(script().registered, 0);
 }
 
+// The paper knows the class before it fits (P4): one registration, one contour, of the most probable class.
+TEST_F(FitView, ThePaperDecidesTheClassFirst) {
+  for (const char* method : {"gfp_paper", "gfp_grid26"}) {
+    script().reset();
+    PipelineOptions options;
+    options.method = method;
+    const auto candidates = fit_view(block_view(), library, options);
+    ASSERT_EQ(candidates->size(), 1U);
+    EXPECT_EQ(candidates->front().model.class_name, "bowl");
+    EXPECT_EQ(script().registered, 1);
+    EXPECT_EQ(script().contoured, 1);
+    EXPECT_EQ(script().superquadrics, 0);
+  }
+  PipelineOptions options;
+  options.method = "gfp_paper";
+  EXPECT_TRUE(fit_view(block_view(), PrimitiveLibrary(), options)->empty()) << "no class, no primitive, no fit";
+}
+
 TEST_F(FitView, MethodsAreFoundByNameAndUnknownOnesNameTheKnown) {
   PipelineOptions options;
   for (const std::string& method : method_names()) {
@@ -94,11 +112,11 @@ TEST_F(FitView, MethodsAreFoundByNameAndUnknownOnesNameTheKnown) {
   options.method = "guess";
   for (const Error& error : {fit_view(block_view(), library, options).error(), validate(options).error()}) {
     EXPECT_EQ(error.code, ErrorCode::kNotFound);
-    EXPECT_EQ(error.what, "method = guess, expected one of gfp_robust, superquadric");
+    EXPECT_EQ(error.what, "method = guess, expected one of gfp_robust, gfp_paper, gfp_grid26, sphere_snake, superquadric, simple_primitive, nearest_instance");
   }
   options = {};
   options.profile = "paperback";
-  EXPECT_EQ(validate(options).error().what, "profile = paperback, expected one of robust");
+  EXPECT_EQ(validate(options).error().what, "profile = paperback, expected one of robust, paper");
 }
 
 TEST_F(FitView, TimesItsStages) {

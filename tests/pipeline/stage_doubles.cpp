@@ -6,10 +6,14 @@
 #include "gfp/cloud/depth_to_cloud.hpp"
 #include "gfp/cloud/estimate_normals.hpp"
 #include "gfp/grasp/plan_grasps.hpp"
+#include "gfp/modelling/fit_simple_primitive.hpp"
 #include "gfp/modelling/fit_superquadric.hpp"
 #include "gfp/modelling/model_contour.hpp"
+#include "gfp/modelling/model_contour_paper.hpp"
 #include "gfp/recognition/recognise.hpp"
+#include "gfp/registration/register_paper.hpp"
 #include "gfp/registration/register_primitive.hpp"
+#include "gfp/registration/retrieve_instance.hpp"
 #include "gfp/segmentation/segment_cloud.hpp"
 #include "gfp/selection/select_models.hpp"
 #include "support/box_model.hpp"
@@ -127,6 +131,30 @@ FittedModel model_contour(const ObjectView& view, const Placement& placement, co
   model.T_camera_object.translation() = view.camera.ray(view.tile.u0, view.tile.v0);
   return model;
 }
+
+Placement register_paper(const ObjectView& view, const Hypothesis& hypothesis, const PaperRegistrationOptions&) {
+  return register_primitive(view, hypothesis).front();
+}
+
+FittedModel model_contour_paper(const ObjectView& view, const Placement& placement, const PaperContourOptions&, ContourDirections, ContourTrace*) {
+  FittedModel model = model_contour(view, placement);
+  model.method = "gfp_paper";
+  return model;
+}
+
+FittedModel model_placed(const ObjectView& view, const Placement& placement, const std::string& method) {
+  FittedModel model = model_contour(view, placement);
+  model.method = method;
+  return model;
+}
+
+Placement retrieve_instance(const ObjectView& view, const std::vector<Hypothesis>& hypotheses, const RetrieveInstanceOptions&) {
+  return hypotheses.empty() ? Placement{} : register_primitive(view, hypotheses.front()).front();
+}
+
+FittedModel fit_simple_primitive(const ObjectView&) { return test::box_model("simple_primitive", "unknown", {0.1, 0.1, 0.1}, 2.0); }
+
+FittedModel fit_sphere_snake(const ObjectView&, const PaperContourOptions&, ContourTrace*) { return test::box_model("sphere_snake", "unknown", {0.1, 0.1, 0.1}, 2.0); }
 
 FittedModel fit_superquadric(const ObjectView&, const FitSuperquadricOptions&) {
   ++test::script().superquadrics;
