@@ -44,6 +44,19 @@ std::vector<Instance> members_of(const Primitive& primitive, const RetrieveInsta
   return members;
 }
 
+/// Points all over the surface: by its vertices alone, the member with the densest ones would win.
+std::vector<Vector3d> spread_over(const TriangleMesh& mesh) {
+  constexpr int kSteps = 4;
+  std::vector<Vector3d> points;
+  for (const Triangle& t : mesh.triangles) {
+    const Vector3d& a = mesh.vertices[static_cast<std::size_t>(t[0])];
+    const Vector3d ab = mesh.vertices[static_cast<std::size_t>(t[1])] - a, ac = mesh.vertices[static_cast<std::size_t>(t[2])] - a;
+    for (int i = 0; i < kSteps; ++i)
+      for (int j = 0; i + j < kSteps; ++j) points.push_back(a + (i + 1.0 / 3) / kSteps * ab + (j + 1.0 / 3) / kSteps * ac);
+  }
+  return points;
+}
+
 struct Found {
   double cost = std::numeric_limits<double>::infinity();
   const Hypothesis* hypothesis = nullptr;
@@ -78,7 +91,7 @@ class Retrieval {
 
   void try_member(const Hypothesis& hypothesis, const Instance& member, Found& best) const {
     const Primitive& primitive = *hypothesis.primitive;
-    const NearestPointField field(member.mesh.vertices, 0.5 * bounds(member.mesh.vertices).size().maxCoeff());
+    const NearestPointField field(spread_over(member.mesh), 0.5 * bounds(member.mesh.vertices).size().maxCoeff());
     const auto normals = vertex_normals(member.mesh);
     const std::vector<int> poses = hypothesis.stable_poses.empty() ? std::vector<int>{0} : hypothesis.stable_poses;
     const int yaws = primitive.symmetry.revolution ? 1 : options_.yaw_steps;

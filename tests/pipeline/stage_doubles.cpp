@@ -133,7 +133,7 @@ FittedModel model_contour(const ObjectView& view, const Placement& placement, co
 }
 
 Placement register_paper(const ObjectView& view, const Hypothesis& hypothesis, const PaperRegistrationOptions&) {
-  return register_primitive(view, hypothesis).front();
+  return register_hypotheses(view, {&hypothesis, 1}, {}).front();
 }
 
 FittedModel model_contour_paper(const ObjectView& view, const Placement& placement, const PaperContourOptions&, ContourDirections, ContourTrace*) {
@@ -149,7 +149,7 @@ FittedModel model_placed(const ObjectView& view, const Placement& placement, con
 }
 
 Placement retrieve_instance(const ObjectView& view, const std::vector<Hypothesis>& hypotheses, const RetrieveInstanceOptions&) {
-  return hypotheses.empty() ? Placement{} : register_primitive(view, hypotheses.front()).front();
+  return hypotheses.empty() ? Placement{} : register_hypotheses(view, hypotheses, {}).front();
 }
 
 FittedModel fit_simple_primitive(const ObjectView&) { return test::box_model("simple_primitive", "unknown", {0.1, 0.1, 0.1}, 2.0); }

