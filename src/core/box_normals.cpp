@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <vector>
 
@@ -57,76 +58,102 @@ void row_moments(const float* w, const float* broken, int count, int radius, flo
   }
 }
 
+// Eight pixels in one register (two of SSE2's): sums over a box stay in registers from the first tap to the last.
+constexpr int kGroup = 8;
+typedef float Group __attribute__((vector_size(4 * kGroup), aligned(4), may_alias));
+typedef std::int32_t GroupMask __attribute__((vector_size(4 * kGroup), aligned(4), may_alias));
+
 struct Slopes {
   float du[kLanes], dv[kLanes], mean[kLanes], clean[kLanes];  // of 1/z per pixel; 1/z at the centre; whether the box is whole
 };
 
 __attribute__((target_clones("arch=x86-64-v3", "default")))
 void clean_slopes(const float* sum, const float* moment, const float* breaks, std::ptrdiff_t stride, int radius, Slopes& out) {
-  float total[kLanes], mu[kLanes], mv[kLanes], broken[kLanes];
-  for (int i = 0; i < kLanes; ++i) {
-    total[i] = sum[i];
-    mu[i] = moment[i];
-    mv[i] = 0.0F;
-    broken[i] = breaks[i];
-  }
-  for (int k = 1; k <= radius; ++k) {
-    const float offset = static_cast<float>(k);
-    const std::ptrdiff_t down = k * stride;
-    for (int i = 0; i < kLanes; ++i) {
-      total[i] += sum[i + down] + sum[i - down];
-      mu[i] += moment[i + down] + moment[i - down];
-      mv[i] += offset * (sum[i + down] - sum[i - down]);
-      broken[i] += breaks[i + down] + breaks[i - down];
-    }
-  }
   const float side = static_cast<float>(2 * radius + 1);
   const float second = side * static_cast<float>(radius * (radius + 1) * (2 * radius + 1)) / 3.0F;  // sum of offset^2 over the box
-  for (int i = 0; i < kLanes; ++i) {
-    out.du[i] = mu[i] / second;
-    out.dv[i] = mv[i] / second;
-    out.mean[i] = total[i] / (side * side);
-    out.clean[i] = broken[i] == 0.0F ? 1.0F : 0.0F;
+  const float per_second = 1.0F / second, per_pixel = 1.0F / (side * side);
+  for (int g = 0; g < kLanes; g += kGroup) {
+    const auto at = [g](const float* plane) __attribute__((always_inline)) -> const Group* { return reinterpret_cast<const Group*>(plane + g); };
+    Group total = *at(sum), mu = *at(moment), mv = {}, broken = *at(breaks);
+    for (int k = 1; k <= radius; ++k) {
+      const std::ptrdiff_t down = k * stride;
+      const Group below = *at(sum + down), above = *at(sum - down);
+      total += below + above;
+      mu += *at(moment + down) + *at(moment - down);
+      mv += static_cast<float>(k) * (below - above);
+      broken += *at(breaks + down) + *at(breaks - down);
+    }
+    *reinterpret_cast<Group*>(out.du + g) = mu * per_second;
+    *reinterpret_cast<Group*>(out.dv + g) = mv * per_second;
+    *reinterpret_cast<Group*>(out.mean + g) = total * per_pixel;
+    for (int i = 0; i < kGroup; ++i) out.clean[g + i] = broken[i] == 0.0F ? 1.0F : 0.0F;
   }
+}
+
+// What the taps on the centre's surface sum up to, for one group of pixels.
+struct MaskedSums {
+  float n[kGroup], su[kGroup], sv[kGroup], suu[kGroup], suv[kGroup], svv[kGroup], sw[kGroup], suw[kGroup], svw[kGroup];
+};
+
+__attribute__((target_clones("arch=x86-64-v3", "default")))
+void sum_taps(const float* w, std::ptrdiff_t stride, int radius, float step, MaskedSums& out) {
+  const Group centre = *reinterpret_cast<const Group*>(w), limit = step * centre;
+  Group n = {}, su = {}, sv = {}, suu = {}, suv = {}, svv = {}, sw = {}, suw = {}, svw = {};
+  const int spacing = radius >= 4 ? 2 : 1;
+  for (int dv = -radius; dv <= radius; dv += spacing) {
+    Group row_n = {}, row_u = {}, row_uu = {}, row_w = {}, row_uw = {};
+    const float* row = w + dv * stride;
+    for (int du = -radius; du <= radius; du += spacing) {
+      const float fu = static_cast<float>(du);
+      const Group difference = *reinterpret_cast<const Group*>(row + du) - centre;
+      const GroupMask mask = (difference <= limit) & (difference >= -limit);
+      const Group on = -__builtin_convertvector(mask, Group), d = (Group)((GroupMask)difference & mask);
+      row_n += on;
+      row_u += fu * on;
+      row_uu += fu * fu * on;
+      row_w += d;
+      row_uw += fu * d;
+    }
+    const float fv = static_cast<float>(dv);
+    n += row_n;
+    su += row_u;
+    suu += row_uu;
+    sw += row_w;
+    suw += row_uw;
+    sv += fv * row_n;
+    suv += fv * row_u;
+    svv += fv * fv * row_n;
+    svw += fv * row_w;
+  }
+  const auto put = [](const Group& from, float* to) __attribute__((always_inline)) { *reinterpret_cast<Group*>(to) = from; };
+  put(n, out.n), put(su, out.su), put(sv, out.sv), put(suu, out.suu), put(suv, out.suv), put(svv, out.svv), put(sw, out.sw), put(suw, out.suw), put(svw, out.svw);
 }
 
 // The same where the box is not whole: least squares over the taps on the centre's surface. Not enough of them: NaN.
 __attribute__((target_clones("arch=x86-64-v3", "default")))
-void masked_slopes(const float* w, std::ptrdiff_t stride, int radius, float step, Slopes& out) {
-  float n[kLanes] = {}, su[kLanes] = {}, sv[kLanes] = {}, suu[kLanes] = {}, suv[kLanes] = {}, svv[kLanes] = {};
-  float sw[kLanes] = {}, suw[kLanes] = {}, svw[kLanes] = {};
-  const int spacing = radius >= 4 ? 2 : 1;
-  for (int dv = -radius; dv <= radius; dv += spacing)
-    for (int du = -radius; du <= radius; du += spacing) {
-      const float* tap = w + dv * stride + du;
-      const float fu = static_cast<float>(du), fv = static_cast<float>(dv);
-      for (int i = 0; i < kLanes; ++i) {
-        const float difference = tap[i] - w[i];
-        const float on = std::abs(difference) <= step * w[i] ? 1.0F : 0.0F;
-        const float d = on * difference;
-        n[i] += on;
-        su[i] += on * fu;
-        sv[i] += on * fv;
-        suu[i] += on * (fu * fu);
-        suv[i] += on * (fu * fv);
-        svv[i] += on * (fv * fv);
-        sw[i] += d;
-        suw[i] += fu * d;
-        svw[i] += fv * d;
-      }
-    }
-  for (int i = 0; i < kLanes; ++i) {
-    const float inverse_n = 1.0F / std::max(n[i], 1.0F);
-    const float mu = su[i] * inverse_n, mv = sv[i] * inverse_n, mw = sw[i] * inverse_n;
-    const float cuu = suu[i] - su[i] * mu, cuv = suv[i] - su[i] * mv, cvv = svv[i] - sv[i] * mv;
-    const float cuw = suw[i] - su[i] * mw, cvw = svw[i] - sv[i] * mw;
+void solve_masked(const float* w, const MaskedSums& s, float* __restrict du, float* __restrict dv, float* __restrict mean, const float* clean_flags) {
+  for (int i = 0; i < kGroup; ++i) {
+    const float inverse_n = 1.0F / std::max(s.n[i], 1.0F);
+    const float mu = s.su[i] * inverse_n, mv = s.sv[i] * inverse_n, mw = s.sw[i] * inverse_n;
+    const float cuu = s.suu[i] - s.su[i] * mu, cuv = s.suv[i] - s.su[i] * mv, cvv = s.svv[i] - s.sv[i] * mv;
+    const float cuw = s.suw[i] - s.su[i] * mw, cvw = s.svw[i] - s.sv[i] * mw;
     const float determinant = cuu * cvv - cuv * cuv;
-    const bool solvable = (n[i] >= kMinReadings) & (determinant > 0.05F * (cuu + cvv) * (cuu + cvv) * 0.25F) & (w[i] > 0.0F);
+    const bool solvable = (s.n[i] >= kMinReadings) & (determinant > 0.05F * (cuu + cvv) * (cuu + cvv) * 0.25F) & (w[i] > 0.0F);
     const float a = (cuw * cvv - cvw * cuv) / determinant, b = (cvw * cuu - cuw * cuv) / determinant;
-    const bool clean = out.clean[i] != 0.0F;
-    out.du[i] = clean ? out.du[i] : solvable ? a : kNaN;
-    out.dv[i] = clean ? out.dv[i] : solvable ? b : kNaN;
-    out.mean[i] = clean ? out.mean[i] : w[i] + mw - a * mu - b * mv;
+    const bool clean = clean_flags[i] != 0.0F;
+    du[i] = clean ? du[i] : solvable ? a : kNaN;
+    dv[i] = clean ? dv[i] : solvable ? b : kNaN;
+    mean[i] = clean ? mean[i] : w[i] + mw - a * mu - b * mv;
+  }
+}
+
+// Only for the groups in which some box is not whole.
+void masked_slopes(const float* w, std::ptrdiff_t stride, int radius, float step, int count, Slopes& out) {
+  for (int g = 0; g < count; g += kGroup) {
+    if (std::all_of(out.clean + g, out.clean + std::min(g + kGroup, count), [](float clean) { return clean != 0.0F; })) continue;
+    MaskedSums sums;
+    sum_taps(w + g, stride, radius, step, sums);
+    solve_masked(w + g, sums, out.du + g, out.dv + g, out.mean + g, out.clean + g);
   }
 }
 
@@ -206,8 +233,8 @@ void box_normals(const DepthPlanes& depth, const BoxNormalsOptions& options, con
       clean_slopes(&tile.row_sum[t], &tile.row_moment[t], &tile.row_broken[t], tile.stride, radius, slopes);
       if (options.whole_boxes_only)
         clear_broken(slopes);
-      else if (!std::all_of(slopes.clean, slopes.clean + count, [](float clean) { return clean != 0.0F; }))
-        masked_slopes(&tile.inverse[t], tile.stride, radius, options.max_depth_step, slopes);
+      else
+        masked_slopes(&tile.inverse[t], tile.stride, radius, options.max_depth_step, count, slopes);
       if (depth.undistorted) {
         normals_of(slopes, depth.x + i, depth.y + i, depth.z + i, count, static_cast<float>(depth.fx), static_cast<float>(depth.fy), nx + i, ny + i, nz + i);
         continue;
