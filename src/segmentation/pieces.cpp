@@ -38,14 +38,14 @@ PixelRect bounds_of(const PixelList& pixels, int width) {
 class Cutter {
  public:
   Cutter(const OrganizedCloud& cloud, const std::vector<PixelList>& clusters, double tolerance_m, PieceMap& map)
-      : cloud_(cloud), clusters_(clusters), tolerance_(static_cast<float>(tolerance_m)), map_(map), cluster_of_(cloud.size(), -1), open_(cloud.size(), 0) {}
+      : cloud_(cloud), clusters_(clusters), tolerance_(static_cast<float>(tolerance_m)), map_(map), cluster_of_(cloud.size(), -1), open_(cloud.size(), 0), crease_(cloud.size(), 0) {}
 
   void run() {
     for (std::size_t c = 0; c < clusters_.size(); ++c)
       for (const auto i : clusters_[c]) cluster_of_[static_cast<std::size_t>(i)] = static_cast<std::int32_t>(c);
     estimate_normals();
     for (const PixelList& cluster : clusters_)
-      for (const auto i : cluster) open_[static_cast<std::size_t>(i)] = !is_step(pixel(i)) && !is_crease(pixel(i));
+      for (const auto i : cluster) open_[static_cast<std::size_t>(i)] = !is_step(pixel(i)) && !near_crease(pixel(i));
     const auto kept = connected_components(cloud_, open_, open_, {kStepShare * tolerance_, 0.0}, kMinPiece);
     for (const PixelList& pixels : kept) add(pixels);
     grow_back();
@@ -83,6 +83,15 @@ class Cutter {
       if (behind < 0 || std::abs((z(ahead) - z(i)) - (z(i) - z(behind))) > step_limit(i)) return true;
     }
     return false;
+  }
+
+  // Creases are bands as wide as the span: every second pixel of every second row tells for its neighbours (which come later).
+  bool near_crease(const Pixel& p) {
+    const std::int32_t anchor = same_cluster(p, {-(p.u & 1), -(p.v & 1)});
+    if (anchor >= 0 && anchor != p.i) return crease_[static_cast<std::size_t>(anchor)] != 0;
+    const bool crease = is_crease(p);
+    crease_[static_cast<std::size_t>(p.i)] = crease;
+    return crease;
   }
 
   bool is_crease(const Pixel& p) const {
@@ -145,7 +154,7 @@ class Cutter {
   float tolerance_;
   PieceMap& map_;
   std::vector<std::int32_t> cluster_of_;
-  std::vector<std::uint8_t> open_;
+  std::vector<std::uint8_t> open_, crease_;
 };
 
 }  // namespace
