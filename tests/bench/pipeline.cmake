@@ -1,4 +1,2 @@
-if(TARGET gfp::simulation AND TARGET gfp::app)
-  target_sources(gfp_bench PRIVATE ${CMAKE_CURRENT_LIST_DIR}/pipeline.cpp)
-  target_link_libraries(gfp_bench PRIVATE gfp::app gfp::simulation TBB::tbb)
-endif()
+target_sources(gfp_bench PRIVATE ${CMAKE_CURRENT_LIST_DIR}/pipeline.cpp)
+target_link_libraries(gfp_bench PRIVATE gfp::app gfp::simulation TBB::tbb)
