@@ -69,7 +69,7 @@ TEST_F(BadInput, MutatedCloudsNeverCrash) {
   for (int v = 0; v < 12; ++v)
     for (int u = 0; u < 12; ++u) cloud += std::to_string((u - 5.5) / 20) + " " + std::to_string((v - 5.5) / 20) + " 1\n";
   std::string names;
-  for (std::uint64_t seed = 1; seed <= 60; ++seed) names += " " + file(std::string("mutant") + std::to_string(seed) + ".pcd", test::mutated(cloud, seed, 200));
+  for (std::uint64_t seed = 1; seed <= 60; ++seed) names.append(" ").append(file("mutant" + std::to_string(seed) + ".pcd", test::mutated(cloud, seed, 200)));
   const CommandResult result = run_gfp("fit --json" + names);
   EXPECT_LT(result.exit_code, 128) << result.err.substr(result.err.size() > 500 ? result.err.size() - 500 : 0);
   EXPECT_NE(result.exit_code, 70) << result.err;
