@@ -36,7 +36,7 @@ std::vector<Candidate> place_and_contour(const ObjectView& view, const std::vect
 std::vector<Candidate> search(const ObjectView& view, const PrimitiveLibrary& library, const PipelineOptions& options, StageTimings& timings) {
   const auto hypotheses = timings.measure("recognition", [&] { return recognise(view, library, options.recognition); });
   auto candidates = place_and_contour(view, hypotheses, options.budget.max_contours, options, timings);
-  if (unknown_may_win(candidates)) {
+  if (unknown_may_win(candidates, options.selection)) {
     auto superquadric = timings.measure(kSuperquadric, [&] { return fit_superquadric(view); });
     candidates.push_back({std::move(superquadric), options.recognition.only_class.empty() ? 0.0 : kToldOtherwise});
   }

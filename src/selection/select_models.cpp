@@ -8,7 +8,6 @@ namespace {
 
 constexpr double kEffectivePixels = 60;   ///< Independent readings that an object's pixels are worth: noise and misfit are correlated.
 constexpr double kFreedomPenalty = 0.5 * 4.1;  ///< Half log of kEffectivePixels for every free parameter (BIC).
-constexpr double kUnknownLogPrior = -8.0; ///< Of "none of the classes we know".
 constexpr double kDescriptorTrust = 0.3;  ///< Share of the descriptors' log likelihood that is kept: they are correlated, and the fit saw more.
 
 constexpr int kUnknownFreedoms = 5;       ///< Of a superquadric: sizes and exponents; the pose is everybody's.
@@ -18,21 +17,21 @@ constexpr double kNegligibleOdds = 3.0;   ///< Log odds beyond which an alternat
 /// Parameters that no prior ties down; a class's size and modes pay through their Mahalanobis distance.
 int free_parameters(const FittedModel& model) { return model.primitive ? 0 : kUnknownFreedoms; }
 
-double log_evidence(const Candidate& candidate) {
+double log_evidence(const Candidate& candidate, const SelectionOptions& options) {
   const FitEvidence& evidence = candidate.model.evidence;
-  const double prior = candidate.model.primitive ? kDescriptorTrust * candidate.log_prior : kUnknownLogPrior + candidate.log_prior;
+  const double prior = candidate.model.primitive ? kDescriptorTrust * candidate.log_prior : options.unknown_log_prior + candidate.log_prior;
   return prior - kEffectivePixels * evidence.cost - 0.5 * evidence.mahalanobis * evidence.mahalanobis -
          kFreedomPenalty * free_parameters(candidate.model);
 }
 
-ObjectEstimate select_one(const ObjectView& view, std::vector<Candidate> candidates) {
+ObjectEstimate select_one(const ObjectView& view, std::vector<Candidate> candidates, const SelectionOptions& options) {
   ObjectEstimate estimate;
   estimate.id = view.id;
   estimate.segment = view.segment;
   std::size_t best = 0;
   std::vector<double> evidences;
   for (const auto& candidate : candidates) {
-    evidences.push_back(log_evidence(candidate));
+    evidences.push_back(log_evidence(candidate, options));
     if (evidences.back() > evidences[best]) best = evidences.size() - 1;
   }
   double total = 0;
@@ -50,15 +49,15 @@ ObjectEstimate select_one(const ObjectView& view, std::vector<Candidate> candida
 
 }  // namespace
 
-bool unknown_may_win(const std::vector<Candidate>& candidates) {
-  const double flawless = kUnknownLogPrior - kEffectivePixels * kLeastCost - kFreedomPenalty * kUnknownFreedoms;
-  return std::none_of(candidates.begin(), candidates.end(), [&](const Candidate& c) { return log_evidence(c) > flawless + kNegligibleOdds; });
+bool unknown_may_win(const std::vector<Candidate>& candidates, const SelectionOptions& options) {
+  const double flawless = options.unknown_log_prior - kEffectivePixels * kLeastCost - kFreedomPenalty * kUnknownFreedoms;
+  return std::none_of(candidates.begin(), candidates.end(), [&](const Candidate& c) { return log_evidence(c, options) > flawless + kNegligibleOdds; });
 }
 
 std::vector<ObjectEstimate> select_models(const std::vector<ObjectView>& views, std::vector<std::vector<Candidate>> candidates,
-                                          const SelectionOptions&) {
+                                          const SelectionOptions& options) {
   std::vector<ObjectEstimate> estimates;
-  for (std::size_t i = 0; i < views.size(); ++i) estimates.push_back(select_one(views[i], std::move(candidates[i])));
+  for (std::size_t i = 0; i < views.size(); ++i) estimates.push_back(select_one(views[i], std::move(candidates[i]), options));
   return estimates;
 }
 

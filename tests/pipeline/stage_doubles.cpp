@@ -161,7 +161,7 @@ FittedModel fit_superquadric(const ObjectView&, const FitSuperquadricOptions&) {
   return test::box_model("superquadric", "unknown", {0.1, 0.1, 0.1}, test::cost_of("unknown"));
 }
 
-bool unknown_may_win(const std::vector<Candidate>& candidates) {
+bool unknown_may_win(const std::vector<Candidate>& candidates, const SelectionOptions&) {
   return std::none_of(candidates.begin(), candidates.end(), [](const Candidate& c) { return c.model.evidence.cost < test::cost_of("unknown") - 3; });
 }
 

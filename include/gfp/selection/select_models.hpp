@@ -14,16 +14,16 @@ struct Candidate {
 };
 
 struct SelectionOptions {
-  double context_weight = 0.0;   ///< Of co-occurrence and relative size over the scene; 0 switches it off.
+  double unknown_log_prior = -8.0;  ///< Natural log of how often a thing is none of the classes; lower: named more readily.
 };
 
 template <class Visitor>
 void visit_fields(SelectionOptions& o, Visitor&& field) {
-  field("context_weight", o.context_weight, 0.0, 10.0);
+  field("unknown_log_prior", o.unknown_log_prior, -100.0, 0.0);
 }
 
 /// Whether a fit without a class could still matter beside these: even a flawless one pays for its freedom. True where there are none.
-bool unknown_may_win(const std::vector<Candidate>& candidates);
+bool unknown_may_win(const std::vector<Candidate>& candidates, const SelectionOptions& options = {});
 
 /// Which of its candidates each object is, decided jointly. `candidates[i]` belongs to `views[i]` and is not empty.
 std::vector<ObjectEstimate> select_models(const std::vector<ObjectView>& views, std::vector<std::vector<Candidate>> candidates,
