@@ -5,7 +5,9 @@
 
 #include "gfp/core/mesh.hpp"
 #include "gfp/modelling/evaluate_fit.hpp"
+#include "gfp/primitive/class_distance.hpp"
 #include "modelling/contour_solver.hpp"
+#include "modelling/model_of_placement.hpp"
 #include "modelling/surface_targets.hpp"
 #include "modelling/symmetry_carry.hpp"
 #include "modelling/vertex_sigma.hpp"
@@ -133,24 +135,14 @@ FittedModel model_contour(const ObjectView& view, const Placement& placement, co
   const Primitive& primitive = *placement.primitive;
   const auto& triangles = primitive.topology->triangles;
   const Transform T_support_object = view.T_camera_support.inverse() * placement.T_camera_object;
-  FittedModel model;
+  FittedModel model = model_of_placement(placement, "gfp_robust");
   Contour contour = model_shape(view, placement, T_support_object, options, model.modes);
 
-  model.method = "gfp_robust";
-  model.class_name = primitive.class_name;
-  model.primitive = placement.primitive;
-  model.topology = primitive.topology;
-  model.T_camera_object = placement.T_camera_object;
-  model.size_m = placement.size_m;
-  model.stable_pose = placement.stable_pose;
   model.vertices = in_frame(T_support_object.inverse(), contour.vertices);
   model.energies = std::move(contour.energies);
   model.iterations = contour.iterations;
   if (contour.sound) model.self_intersections = 0;
   model.converged = contour.settled && placement.converged;
-  model.yaw_low_rad = placement.yaw_low_rad;
-  model.yaw_high_rad = placement.yaw_high_rad;
-  if (placement.covariance.rows() >= 6) model.pose_covariance = placement.covariance.topLeftCorner<6, 6>();
 
   const auto vertices_camera = in_frame(view.T_camera_support, contour.vertices);
   model.evidence = evaluate_fit(view, vertices_camera, triangles, model.states);
@@ -160,10 +152,8 @@ FittedModel model_contour(const ObjectView& view, const Placement& placement, co
   }
   contour.data.readings.resize(model.vertices.size(), 0);  // no look at the image where no iteration was asked for
   model.sigma_m = vertex_sigma(view, placement, contour.data, model.states, contour.vertices, vertex_normals({contour.vertices, triangles}));
-  const Eigen::Vector3d deviation = placement.size_m.array().log().matrix() - primitive.log_size_mean;
-  double squared = deviation.dot(primitive.log_size_covariance.ldlt().solve(deviation));
-  for (const double b : model.modes) squared += b * b;
-  model.evidence.mahalanobis = std::sqrt(squared);
+  const Eigen::VectorXd modes = Eigen::Map<const Eigen::VectorXd>(model.modes.data(), static_cast<Eigen::Index>(model.modes.size()));
+  model.evidence.mahalanobis = std::sqrt(class_distance_squared(primitive, placement.size_m.array().log().matrix(), modes));
   return model;
 }
 

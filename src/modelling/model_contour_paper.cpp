@@ -6,6 +6,7 @@
 #include "gfp/memory/object_points.hpp"
 #include "gfp/modelling/evaluate_fit.hpp"
 #include "gfp/modelling/superquadric.hpp"
+#include "modelling/model_of_placement.hpp"
 #include "modelling/paper_contour.hpp"
 #include "modelling/volume_model.hpp"
 
@@ -68,24 +69,6 @@ Transform frame_under(const ObjectView& view, const Sphere& ball) {
   return T_camera_object;
 }
 
-/// A model without its vertices.
-FittedModel model_of(const Placement& placement, const std::string& method) {
-  const Primitive& primitive = *placement.primitive;
-  FittedModel model;
-  model.method = method;
-  model.class_name = primitive.class_name;
-  model.primitive = placement.primitive;
-  model.topology = primitive.topology;
-  model.T_camera_object = placement.T_camera_object;
-  model.size_m = placement.size_m;
-  model.modes = placement.modes;
-  model.stable_pose = placement.stable_pose;
-  model.yaw_low_rad = placement.yaw_low_rad;
-  model.yaw_high_rad = placement.yaw_high_rad;
-  if (placement.covariance.rows() >= 6) model.pose_covariance = placement.covariance.topLeftCorner<6, 6>();
-  return model;
-}
-
 ContourStart placed_start(const Placement& placement) {
   const Primitive& primitive = *placement.primitive;
   ContourStart start{transformed({shape(primitive, placement.size_m, placement.modes), primitive.topology->triangles}, placement.T_camera_object), {}, 0};
@@ -97,7 +80,7 @@ ContourStart placed_start(const Placement& placement) {
 
 FittedModel model_contour_paper(const ObjectView& view, const Placement& placement, const PaperContourOptions& options, ContourDirections directions,
                                 ContourTrace* trace) {
-  FittedModel model = model_of(placement, directions == ContourDirections::kGrid26 ? "gfp_grid26" : "gfp_paper");
+  FittedModel model = model_of_placement(placement, directions == ContourDirections::kGrid26 ? "gfp_grid26" : "gfp_paper");
   const SceneDensity scene = scene_density(view, options);
   ContourStart start = placed_start(placement);
   start.search_m = std::min(options.search_share * circumscribed_sphere(start.mesh.vertices).radius, options.max_search_m);
@@ -106,7 +89,7 @@ FittedModel model_contour_paper(const ObjectView& view, const Placement& placeme
 }
 
 FittedModel model_placed(const ObjectView& view, const Placement& placement, const std::string& method) {
-  FittedModel model = model_of(placement, method);
+  FittedModel model = model_of_placement(placement, method);
   const ContourStart start = placed_start(placement);
   describe(view, start, {start.mesh.vertices, std::vector<std::uint8_t>(start.mesh.vertices.size(), 0), {}, placement.converged}, model, nullptr);
   return model;

@@ -10,9 +10,4 @@ void SizeBelief::observe(const Eigen::Vector3d& weights, double value, double si
   covariance_ -= gain * (weights.transpose() * covariance_);
 }
 
-double prior_energy(const Primitive& primitive, const Eigen::Vector3d& log_size, const Eigen::VectorXd& modes) {
-  const Eigen::Vector3d deviation = log_size - primitive.log_size_mean;
-  return 0.5 * deviation.dot(primitive.log_size_covariance.ldlt().solve(deviation)) + 0.5 * modes.squaredNorm();
-}
-
 }  // namespace gfp

@@ -22,7 +22,4 @@ class SizeBelief {
   Eigen::Matrix3d covariance_;
 };
 
-/// Half the squared Mahalanobis distance of size and modes under the class.
-double prior_energy(const Primitive& primitive, const Eigen::Vector3d& log_size, const Eigen::VectorXd& modes);
-
 }  // namespace gfp

@@ -6,7 +6,8 @@
 #include <numeric>
 #include <span>
 
-#include "registration/class_prior.hpp"
+#include "gfp/memory/image_score.hpp"
+#include "gfp/primitive/class_distance.hpp"
 #include "registration/pose_search.hpp"
 #include "registration/visible_fit.hpp"
 
@@ -22,7 +23,6 @@ constexpr double kCoarseSigmaM = 0.006; ///< With which placements on the search
 constexpr int kYawsPerPose = 3;         ///< Of a scan that stay in the race.
 constexpr double kFarBehind = 1.5;      ///< Score by which an unrefined contender may trail the best.
 constexpr double kHopeless = 0.5;       ///< The same once it is refined on the coarse grid.
-constexpr double kPixelsPerPrior = 60;  ///< Independent readings that the score stands for: what a nat of the class prior weighs against it.
 constexpr double kTwinM = 0.01;         ///< Corners of bounding boxes of the same placement.
 constexpr int kStalled = 3;              ///< Steps without a better score: re-association jitters about the optimum.
 constexpr double kConvergedStep = 2e-4; ///< Metres, radians and log sizes alike: well below the noise.
@@ -60,6 +60,9 @@ int refine(VisibleFit& fit, ScoredState& best, const Refinement& stage, bool& co
   return k;
 }
 
+/// What a state costs under the class, nats.
+double prior_energy(const Primitive& primitive, const PoseState& state) { return 0.5 * class_distance_squared(primitive, state.log_size, state.modes); }
+
 /// A hypothesis that names no stable pose leaves all of them open.
 std::vector<int> poses_to_try(const Hypothesis& hypothesis) {
   if (!hypothesis.stable_poses.empty()) return hypothesis.stable_poses;
@@ -87,8 +90,8 @@ Placement to_placement(const ObjectView& view, const PrimitivePtr& primitive, Vi
   placement.size_m = scored.state.log_size.array().exp().matrix();
   placement.modes.assign(scored.state.modes.data(), scored.state.modes.data() + scored.state.modes.size());
   placement.stable_pose = scored.stable_pose;
-  const double effective_pixels = std::min(kPixelsPerPrior, static_cast<double>(std::max(1, pixels)));
-  placement.cost = scored.score + prior_energy(*primitive, scored.state.log_size, scored.state.modes) / effective_pixels;
+  const double effective_pixels = std::min(kScorePixels, static_cast<double>(std::max(1, pixels)));
+  placement.cost = scored.score + prior_energy(*primitive, scored.state) / effective_pixels;
   fit.pose(scored.state);
   fit.step({.robust_m = 0.006}, 0);
   placement.covariance = fit.information().ldlt().solve(Eigen::MatrixXd::Identity(scored.state.unknowns(), scored.state.unknowns()));
@@ -195,8 +198,7 @@ class Race {
   /// Sorts by standing; keeps at most `count`, none of which trails the best by more than `margin`.
   void drop(double margin, std::size_t count) {
     for (Contender& contender : contenders_) {
-      const PoseState& state = contender.scored.state;
-      contender.standing = contender.scored.score + prior_energy(*hypotheses_[contender.hypothesis].primitive, state.log_size, state.modes) / kPixelsPerPrior;
+      contender.standing = contender.scored.score + prior_energy(*hypotheses_[contender.hypothesis].primitive, contender.scored.state) / kScorePixels;
     }
     std::stable_sort(contenders_.begin(), contenders_.end(), [](const Contender& a, const Contender& b) { return a.standing < b.standing; });
     const double limit = contenders_.front().standing + margin;

@@ -3,11 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "gfp/memory/image_score.hpp"
+
 namespace gfp {
 namespace {
 
-constexpr double kEffectivePixels = 60;   ///< Independent readings that an object's pixels are worth: noise and misfit are correlated.
-constexpr double kFreedomPenalty = 0.5 * 4.1;  ///< Half log of kEffectivePixels for every free parameter (BIC).
+constexpr double kFreedomPenalty = 0.5 * 4.1;  ///< Half log of kScorePixels for every free parameter (BIC).
 constexpr double kDescriptorTrust = 0.3;  ///< Share of the descriptors' log likelihood that is kept: they are correlated, and the fit saw more.
 
 constexpr int kUnknownFreedoms = 5;       ///< Of a superquadric: sizes and exponents; the pose is everybody's.
@@ -20,7 +21,7 @@ int free_parameters(const FittedModel& model) { return model.primitive ? 0 : kUn
 double log_evidence(const Candidate& candidate, const SelectionOptions& options) {
   const FitEvidence& evidence = candidate.model.evidence;
   const double prior = candidate.model.primitive ? kDescriptorTrust * candidate.log_prior : options.unknown_log_prior + candidate.log_prior;
-  return prior - kEffectivePixels * evidence.cost - 0.5 * evidence.mahalanobis * evidence.mahalanobis -
+  return prior - kScorePixels * evidence.cost - 0.5 * evidence.mahalanobis * evidence.mahalanobis -
          kFreedomPenalty * free_parameters(candidate.model);
 }
 
@@ -50,7 +51,7 @@ ObjectEstimate select_one(const ObjectView& view, std::vector<Candidate> candida
 }  // namespace
 
 bool unknown_may_win(const std::vector<Candidate>& candidates, const SelectionOptions& options) {
-  const double flawless = options.unknown_log_prior - kEffectivePixels * kLeastCost - kFreedomPenalty * kUnknownFreedoms;
+  const double flawless = options.unknown_log_prior - kScorePixels * kLeastCost - kFreedomPenalty * kUnknownFreedoms;
   return std::none_of(candidates.begin(), candidates.end(), [&](const Candidate& c) { return log_evidence(c, options) > flawless + kNegligibleOdds; });
 }
 

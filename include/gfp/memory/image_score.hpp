@@ -22,6 +22,9 @@ inline double plane_distance(const ObservedTile& observed, const DepthTile& rend
 /// Did the sensor see past the rendered surface at this cell? Cells without a reading say nothing.
 bool in_free_space(const ObservedTile& observed, const DepthTile& rendered, int cell);
 
+/// Independent readings that an object's pixels are worth, for noise and misfit are correlated: what a score weighs in nats.
+inline constexpr double kScorePixels = 60;
+
 inline constexpr double kModelSigmaM = 0.003;  ///< What even a good model does not follow, metres.
 
 /// `rendered` must have the grid of `observed`. A larger `model_sigma_m` tells apart models that are still far off.
