@@ -105,18 +105,26 @@ void Daemon::run_pipeline(const std::stop_token& stop) {
       MutexLock lock(mutex_);
       options = pipeline_options_;
     }
+    working_since_ = monotonic_now();
     try {
       PipelineResult result = arena.execute([&] { return parts_.process(**frame, memory, *options); });
       memory = std::move(result.memory);
       publisher_->put(std::make_shared<const Scene>(std::move(result.scene)));
     } catch (const std::exception& error) {  // memory exhausted, or a bug: it costs this frame
       spdlog::error("sensor {} frame {}: {}", (*frame)->sensor, (*frame)->sequence, error.what());
+      working_since_ = Nanoseconds(0);
       continue;
     }
+    working_since_ = Nanoseconds(0);
     MutexLock lock(mutex_);
     if (const auto sensor = sensors_.find((*frame)->sensor); sensor != sensors_.end())
       sensor->second->statistics().scene_done(monotonic_now() - (*frame)->stamps.monotonic);
   }
+}
+
+bool Daemon::is_responsive() const {
+  const Nanoseconds since = working_since_;
+  return since == Nanoseconds(0) || monotonic_now() - since < kStuckAfter;
 }
 
 void Daemon::tick() {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <functional>
 #include <map>
 #include <memory>
@@ -36,6 +37,7 @@ class Daemon {
   Result<void> reload(DaemonOptions options);
 
   void tick();  ///< Once a second: statistics and statuses.
+  bool is_responsive() const;  ///< No frame has been at work for longer than kStuckAfter.
   void stop();  ///< Drains: the frame at work becomes a scene, the last state is sent. Idempotent.
 
   Publisher& publisher() { return *publisher_; }
@@ -52,6 +54,8 @@ class Daemon {
   bool is_at_work(const SensorConfig& sensor) const;
   void run_pipeline(const std::stop_token& stop);
 
+  static constexpr Nanoseconds kStuckAfter{20'000'000'000};
+
   DaemonOptions options_;
   const DaemonParts parts_;
   std::unique_ptr<Publisher> publisher_;
@@ -59,6 +63,7 @@ class Daemon {
   mutable Mutex mutex_;
   std::shared_ptr<const PipelineOptions> pipeline_options_ GFP_GUARDED_BY(mutex_);
   Sensors sensors_ GFP_GUARDED_BY(mutex_);
+  std::atomic<Nanoseconds> working_since_{};  ///< Monotonic; 0: the pipeline waits for a frame.
   std::jthread pipeline_;  ///< Last: it uses all of the above.
 };
 

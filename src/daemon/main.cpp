@@ -10,6 +10,7 @@
 #include "cli/exit_code.hpp"
 #include "daemon/daemon.hpp"
 #include "daemon/logging.hpp"
+#include "daemon/service_manager.hpp"
 #include "gfp/core/version.hpp"
 #include <spdlog/spdlog.h>
 
@@ -42,6 +43,7 @@ gfp::DaemonParts parts() {
 }
 
 void reload(gfp::Daemon& daemon, const Arguments& arguments) {
+  gfp::tell_reloading();
   const auto options = load(arguments);
   if (!options) return spdlog::error("reload: the old configuration stays: {}", options.error().what);
   if (const auto done = daemon.reload(*options); !done) return spdlog::error("reload: the old configuration stays: {}", done.error().what);
@@ -55,12 +57,16 @@ void serve(gfp::Daemon& daemon, const Arguments& arguments, const sigset_t& sign
     const gfp::Nanoseconds now = gfp::monotonic_now();
     if (now >= next_tick) {
       daemon.tick();
+      if (daemon.is_responsive()) gfp::tell_service_manager("WATCHDOG=1");
       next_tick = now + std::chrono::seconds(1);
     }
     const auto left = std::max(gfp::Nanoseconds(1'000'000), next_tick - gfp::monotonic_now());
     const timespec wait{static_cast<time_t>(left.count() / 1'000'000'000), static_cast<long>(left.count() % 1'000'000'000)};
     const int signal = sigtimedwait(&signals, nullptr, &wait);
-    if (signal == SIGHUP) reload(daemon, arguments);
+    if (signal == SIGHUP) {
+      reload(daemon, arguments);
+      gfp::tell_service_manager("READY=1");
+    }
     if (signal == SIGTERM || signal == SIGINT) return spdlog::info("stopping on signal {}", signal);
   }
 }
@@ -89,7 +95,9 @@ int run(const Arguments& arguments) {
   }
   gfp::publish_log_to(&(*daemon)->publisher());
   spdlog::info("gfpd {} serves {} sensor(s)", gfp::version(), options->sensors.size());
+  gfp::tell_service_manager("READY=1");
   serve(**daemon, arguments, signals);
+  gfp::tell_service_manager("STOPPING=1");
   gfp::publish_log_to(nullptr);
   (*daemon)->stop();
   spdlog::info("stopped");

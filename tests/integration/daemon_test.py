@@ -8,6 +8,7 @@ import json
 import os
 import pathlib
 import signal
+import socket
 import subprocess
 import sys
 import tempfile
@@ -116,8 +117,14 @@ def main():
         config = pathlib.Path(folder) / "gfpd.yaml"
         config.write_text(CONFIG)
         log = pathlib.Path(folder) / "gfpd.log"
+        manager = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)
+        manager.bind(folder + "/notify")
+        manager.settimeout(DEADLINE_S)
+        os.environ["NOTIFY_SOCKET"] = folder + "/notify"
         daemon = subprocess.Popen([GFPD, "--config", str(config)], stderr=log.open("w"))
+        del os.environ["NOTIFY_SOCKET"]
         try:
+            assert manager.recv(100) == b"READY=1" and manager.recv(100) == b"WATCHDOG=1", "not what Type=notify waits for"
             objects = check_python_client()
             check_tools()
             check_reload(daemon, config)
