@@ -72,7 +72,7 @@ function(gfp_test name)
   if(ARG_LABELS)
     list(APPEND properties LABELS "${ARG_LABELS}")
   endif()
-  gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST PROPERTIES ${properties})
+  gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST DISCOVERY_TIMEOUT 120 PROPERTIES ${properties})
 endfunction()
 
 # gfp_use_pcl(<target> SOURCES a.cpp... PARTS common kdtree...): PCL's headers (unpacked by scripts/install-packages) for the named files

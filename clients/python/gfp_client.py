@@ -2,12 +2,17 @@
 
 Needs python3-zmq, python3-protobuf and python3-numpy, and no generated code: the messages are built from `gfp.desc`, the
 FileDescriptorSet that the build makes. It is looked for in $GFP_DESCRIPTORS, beside this file, in the build folders of the
-source tree, and in the installed share/gfp.
+source tree, and in the installed share/gfp; where it is in none of them, the daemon on this host is asked for it.
 
     from gfp_client import SceneSubscriber
     for scene in SceneSubscriber():
         for thing in scene.objects:
             print(thing.id, thing.class_name, thing.vertices.shape, thing.triangles.shape, [g.width_m for g in thing.grasps])
+
+Over tcp, with a key (`gfp key new me`, me.pub among the daemon's authorized keys):
+    SceneSubscriber(["tcp://robot:5602"], curve=Curve("robot.pub", "me.key"))
+
+Asking instead of listening: Control().snapshot(), .fit(), .best_grasp(), .parameters(), .set_parameters().
 
 Metres and radians; camera frame x right, y down, z forward; T_a_b maps b coordinates into a (4x4).
 """
@@ -23,7 +28,15 @@ import zmq
 from google.protobuf import descriptor_pb2, descriptor_pool, message_factory
 
 
-def _descriptor_file() -> pathlib.Path:
+def default_endpoint(name: str) -> str:
+    """Where gfpd and its clients meet without any configuration; `name` is sensor, state or control."""
+    for variable in ("RUNTIME_DIRECTORY", "XDG_RUNTIME_DIR"):
+        if os.environ.get(variable):
+            return f"ipc://{os.environ[variable]}/gfp/{name}"
+    return f"ipc:///tmp/gfp-{os.getuid()}/gfp/{name}"
+
+
+def _descriptors() -> bytes:
     here = pathlib.Path(__file__).resolve().parent
     places = [pathlib.Path(os.environ["GFP_DESCRIPTORS"])] if "GFP_DESCRIPTORS" in os.environ else []
     places += [here / "gfp.desc"]
@@ -31,12 +44,21 @@ def _descriptor_file() -> pathlib.Path:
     places += [pathlib.Path(prefix) / "share/gfp/gfp.desc" for prefix in ("/usr/local", "/usr")]
     for place in places:
         if place.is_file():
-            return place
-    raise FileNotFoundError("gfp.desc is in none of: " + ", ".join(map(str, places)) + " (name it in GFP_DESCRIPTORS)")
+            return place.read_bytes()
+    socket = zmq.Context.instance().socket(zmq.REQ)
+    socket.setsockopt(zmq.LINGER, 0)
+    socket.connect(default_endpoint("control"))
+    socket.send(b"desc")
+    try:
+        if socket.poll(3000):
+            return socket.recv()
+    finally:
+        socket.close()
+    raise FileNotFoundError("gfp.desc is in none of: " + ", ".join(map(str, places)) + ", and no gfpd runs here (name it in GFP_DESCRIPTORS)")
 
 
 def _load_messages() -> dict:
-    files = descriptor_pb2.FileDescriptorSet.FromString(_descriptor_file().read_bytes())
+    files = descriptor_pb2.FileDescriptorSet.FromString(_descriptors())
     pool = descriptor_pool.DescriptorPool()
     for file in files.file:
         pool.AddSerializedFile(file.SerializeToString())
@@ -49,12 +71,30 @@ def _load_messages() -> dict:
 MESSAGES = _load_messages()  # "gfp.v1.Scene" -> class
 
 
-def default_endpoint(name: str) -> str:
-    """Where gfpd and its clients meet without any configuration; `name` is sensor or state."""
-    for variable in ("RUNTIME_DIRECTORY", "XDG_RUNTIME_DIR"):
-        if os.environ.get(variable):
-            return f"ipc://{os.environ[variable]}/gfp/{name}"
-    return f"ipc:///tmp/gfp-{os.getuid()}/gfp/{name}"
+class Curve:
+    """Keys for a daemon that serves tcp encrypted: its .pub file, and one's own .key file."""
+
+    def __init__(self, server_file, own_file):
+        self._server, self._own = self._read(server_file), self._read(own_file)
+
+    @staticmethod
+    def _read(file):
+        lines = [line.split(": ", 1) for line in pathlib.Path(file).read_text().splitlines() if line.startswith(("public: ", "secret: "))]
+        return {name: value.strip().encode() for name, value in lines}
+
+    def apply(self, socket):
+        socket.curve_serverkey = self._server["public"]
+        socket.curve_publickey = self._own["public"]
+        socket.curve_secretkey = self._own["secret"]
+
+
+def _open_socket(kind, curve):
+    socket = zmq.Context.instance().socket(kind)
+    for option, value in ((zmq.LINGER, 0), (zmq.HEARTBEAT_IVL, 1000), (zmq.HEARTBEAT_TIMEOUT, 3000), (zmq.RECONNECT_IVL_MAX, 1000), (zmq.IPV6, 1)):
+        socket.setsockopt(option, value)
+    if curve is not None:
+        curve.apply(socket)
+    return socket
 
 
 @dataclasses.dataclass
@@ -69,11 +109,11 @@ class Message:
 class Subscriber:
     """Messages of the given topics (or prefixes of topics). Reconnects by itself; counts what was missed."""
 
-    def __init__(self, topics, endpoints=None, high_water_mark=1000):
+    def __init__(self, topics, endpoints=None, high_water_mark=1000, curve=None):
         self.received = self.missed = self.restarts = 0
+        self.heard = time.monotonic()  # When the last message came: a daemon says something every second.
         self._last = {}  # topic -> (session, seq)
-        self._socket = zmq.Context.instance().socket(zmq.SUB)
-        self._socket.setsockopt(zmq.LINGER, 0)
+        self._socket = _open_socket(zmq.SUB, curve)
         self._socket.setsockopt(zmq.RCVHWM, high_water_mark)
         for topic in topics:
             self._socket.setsockopt_string(zmq.SUBSCRIBE, topic)
@@ -95,6 +135,7 @@ class Subscriber:
 
     def _count(self, topic, envelope):
         self.received += 1
+        self.heard = time.monotonic()
         session, seq = self._last.get(topic, (envelope.session, envelope.seq - 1))
         if session != envelope.session:
             self.restarts += 1
@@ -176,8 +217,8 @@ class Scene:
 class SceneSubscriber:
     """Scenes with their meshes put together. Iterate for ever, or call next(timeout_s)."""
 
-    def __init__(self, endpoints=None):
-        self.subscriber = Subscriber(["/gfp/mesh/", "/gfp/scene/"], endpoints)
+    def __init__(self, endpoints=None, curve=None):
+        self.subscriber = Subscriber(["/gfp/mesh/", "/gfp/scene/"], endpoints, curve=curve)
         self._topologies = {}
 
     def next(self, timeout_s=None):
@@ -195,6 +236,56 @@ class SceneSubscriber:
     def __iter__(self):
         while True:
             yield self.next()
+
+
+class Control:
+    """Asks a gfpd; RuntimeError with its reason where it refuses, TimeoutError where it does not answer."""
+
+    def __init__(self, endpoint=None, timeout_s=5.0, curve=None):
+        self._timeout_s = timeout_s
+        self._next_id = 1
+        self._socket = _open_socket(zmq.DEALER, curve)
+        self._socket.connect(endpoint or default_endpoint("control"))
+
+    def ask(self, **request):
+        """The gfp.v1.ControlReply to a gfp.v1.ControlRequest, as in ask(snapshot={"prefix": "/gfp/scene/"})."""
+        message = MESSAGES["gfp.v1.ControlRequest"](id=self._next_id, **request)
+        self._next_id += 1
+        self._socket.send(message.SerializeToString())
+        end = time.monotonic() + self._timeout_s
+        while self._socket.poll(max(0, round(1000 * (end - time.monotonic())))):
+            reply = MESSAGES["gfp.v1.ControlReply"].FromString(self._socket.recv())
+            if reply.id != message.id:
+                continue  # the answer to a question that was given up
+            if reply.code != 0:
+                raise RuntimeError(reply.error)
+            return reply
+        raise TimeoutError(f"no answer in {self._timeout_s} s")
+
+    def snapshot(self, prefix=""):
+        """[(topic, next_seq, payload)] of the state topics; messages of a topic from next_seq on are newer."""
+        return [(entry.topic, entry.next_seq, MESSAGES[entry.schema].FromString(entry.payload)) for entry in self.ask(snapshot={"prefix": prefix}).snapshot.entries]
+
+    def fit(self, sensor="", region_px=()):
+        """The objects of a sensor's last frame, fitted anew; with a region (u0, v0, u1, v1) those inside it."""
+        fit = self.ask(fit={"sensor": sensor, "region_px": region_px}).fit
+        topologies = {topology.hash: topology for topology in fit.topologies}
+        return [SceneObject(one, topologies.get(one.vertices.topology_hash)) for one in fit.scene.objects]
+
+    def best_grasp(self, object_id, sensor=""):
+        """(Grasp, T_base_tcp) of the best grasp that the robot reaches."""
+        found = self.ask(grasp={"object": object_id, "sensor": sensor}).grasp
+        return Grasp(found.grasp), transform(found.T_base_tcp)
+
+    def parameters(self, *prefixes):
+        return dict(self.ask(get_parameters={"prefixes": prefixes}).parameters.values)
+
+    def set_parameters(self, **values):
+        """As in set_parameters(**{"pipeline.segmentation.min_points": 200}); all or nothing, from the next frame on."""
+        return dict(self.ask(set_parameters={"values": {path: str(value) for path, value in values.items()}}).parameters.values)
+
+    def close(self):
+        self._socket.close()
 
 
 if __name__ == "__main__":

@@ -13,7 +13,9 @@ void add_devices_command(CLI::App& app, ExitStatus& status);
 void add_echo_command(CLI::App& app, ExitStatus& status);
 void add_fit_command(CLI::App& app, ExitStatus& status);
 void add_eval_command(CLI::App& app, ExitStatus& status);
+void add_key_command(CLI::App& app, ExitStatus& status);
 void add_primitive_command(CLI::App& app, ExitStatus& status);
 void add_sub_command(CLI::App& app, ExitStatus& status);
+void add_top_command(CLI::App& app, ExitStatus& status);
 
 }  // namespace gfp

@@ -44,7 +44,9 @@ void add_echo_command(CLI::App& app, ExitStatus& status) {
   auto arguments = std::make_shared<ListenArguments>();
   CLI::App* command = app.add_subcommand("echo", "Prints the messages of a topic, decoded");
   add_listen_options(*command, *arguments);
-  command->callback([arguments, &status] { echo(*arguments, status); });
+  command->callback([arguments, &status] {
+    if (read_listen_keys(*arguments, status)) echo(*arguments, status);
+  });
 }
 
 }  // namespace gfp

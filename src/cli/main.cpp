@@ -21,6 +21,8 @@ int run(int argc, char** argv) {
   gfp::add_devices_command(app, status);
   gfp::add_echo_command(app, status);
   gfp::add_sub_command(app, status);
+  gfp::add_top_command(app, status);
+  gfp::add_key_command(app, status);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -8,6 +8,7 @@
 #include <set>
 #include <zmq.hpp>
 
+#include "client/client_socket.hpp"
 #include "gfp/v1/envelope.pb.h"
 #include "wire/bounded_parse.hpp"
 #include "wire/sensor_messages.hpp"
@@ -45,6 +46,7 @@ struct Subscriber::Sockets {
   zmq::socket_t socket{context, zmq::socket_type::sub};
   std::map<std::string, Heard> heard;
   SubscriberCounts counts;
+  Nanoseconds last_heard = monotonic_now();
 
   Result<Message> read(const std::vector<zmq::message_t>& parts);
   void count(const Message& message);
@@ -61,13 +63,9 @@ Result<Subscriber> Subscriber::connect(const std::vector<std::string>& topics, c
   auto sockets = std::make_unique<Sockets>();
   sockets->options = options;
   zmq::socket_t& socket = sockets->socket;
-  socket.set(zmq::sockopt::linger, 0);
+  if (auto prepared = prepare_client(socket, options.curve); !prepared) return tl::unexpected(prepared.error());
   socket.set(zmq::sockopt::rcvhwm, options.high_water_mark);
   socket.set(zmq::sockopt::maxmsgsize, kMaxMessageBytes);
-  socket.set(zmq::sockopt::reconnect_ivl, 100);
-  socket.set(zmq::sockopt::reconnect_ivl_max, 1000);
-  socket.set(zmq::sockopt::heartbeat_ivl, 1000);
-  socket.set(zmq::sockopt::heartbeat_timeout, 3000);
   for (const std::string& topic : topics) socket.set(zmq::sockopt::subscribe, topic);
   for (const std::string& endpoint : endpoints_for(topics, options)) {
     try {
@@ -126,6 +124,7 @@ Result<Message> Subscriber::Sockets::read(const std::vector<zmq::message_t>& par
 }
 
 void Subscriber::Sockets::count(const Message& message) {
+  last_heard = monotonic_now();
   ++counts.received;
   counts.bytes += message.topic.size() + message.payload.size() + message.blob.size();
   if (message.age_s > options.stale_after_s) ++counts.stale;
@@ -138,6 +137,8 @@ void Subscriber::Sockets::count(const Message& message) {
 }
 
 const SubscriberCounts& Subscriber::counts() const { return sockets_->counts; }
+
+double Subscriber::silent_for_s() const { return std::chrono::duration<double>(monotonic_now() - sockets_->last_heard).count(); }
 
 Result<DepthImage> depth_image(const Message& message) {
   v1::DepthImage header;

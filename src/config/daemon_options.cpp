@@ -29,15 +29,16 @@ Result<void> validate_sensors(const std::vector<SensorConfig>& sensors) {
   return {};
 }
 
-Result<void> validate_endpoints(const char* key, const std::vector<std::string>& endpoints, bool insecure) {
+Result<void> validate_endpoints(const char* key, const std::vector<std::string>& endpoints, const PublishOptions& publish) {
+  const bool may_use_tcp = publish.insecure || !publish.curve_key.empty();
   for (const std::string& endpoint : endpoints) {
     const bool ipc = endpoint.starts_with("ipc://"), inproc = endpoint.starts_with("inproc://"), tcp = endpoint.starts_with("tcp://");
     if (!ipc && !inproc && !tcp)
       return failure(ErrorCode::kInvalidArgument, fmt::format("publish.{} = {}, expected ipc://, inproc:// or tcp://", key, endpoint));
-    if (tcp && !insecure)
+    if (tcp && !may_use_tcp)
       return failure(ErrorCode::kInvalidArgument,
-                     fmt::format("publish.{} = {}, expected ipc:// (tcp is neither encrypted nor authenticated: allow it with "
-                                 "publish.insecure = true or --insecure)", key, endpoint));
+                     fmt::format("publish.{} = {}, expected ipc:// (for tcp give publish.curve_key and publish.authorized_keys, or allow it "
+                                 "unencrypted and for everybody with publish.insecure = true or --insecure)", key, endpoint));
   }
   return {};
 }
@@ -68,8 +69,13 @@ Result<YAML::Node> document_of_setting(const std::string& setting) {
 
 Result<void> validate(const DaemonOptions& options) {
   if (Result<void> valid = validate_sensors(options.sensors); !valid) return valid;
-  if (Result<void> valid = validate_endpoints("sensor_endpoints", options.publish.sensor_endpoints, options.publish.insecure); !valid) return valid;
-  if (Result<void> valid = validate_endpoints("state_endpoints", options.publish.state_endpoints, options.publish.insecure); !valid) return valid;
+  const PublishOptions& publish = options.publish;
+  for (const auto& [key, endpoints] : {std::pair{"sensor_endpoints", &publish.sensor_endpoints}, {"state_endpoints", &publish.state_endpoints}, {"control_endpoints", &publish.control_endpoints}})
+    if (Result<void> valid = validate_endpoints(key, *endpoints, publish); !valid) return valid;
+  if (!publish.curve_key.empty() && publish.authorized_keys.empty())
+    return failure(ErrorCode::kInvalidArgument, "publish.authorized_keys is empty, expected a folder of .pub files beside publish.curve_key");
+  if (options.robot.min_reach_m >= options.robot.max_reach_m)
+    return failure(ErrorCode::kInvalidArgument, fmt::format("robot.min_reach_m = {}, expected less than max_reach_m = {}", options.robot.min_reach_m, options.robot.max_reach_m));
   const auto& cloud = options.pipeline.cloud;
   if (cloud.min_depth_m >= cloud.max_depth_m)
     return failure(ErrorCode::kInvalidArgument,
@@ -96,7 +102,32 @@ Result<DaemonOptions> overlay(DaemonOptions options, const YAML::Node& document,
   return options;
 }
 
+void flatten(const YAML::Node& node, const std::string& path, std::map<std::string, std::string>& values) {
+  if (node.IsMap()) {
+    for (const auto& entry : node) flatten(entry.second, path + (path.empty() ? "" : ".") + entry.first.Scalar(), values);
+  } else if (node.IsSequence() && node.size() > 0 && node[0].IsMap()) {
+    for (std::size_t i = 0; i < node.size(); ++i) flatten(node[i], fmt::format("{}.{}", path, i), values);
+  } else {
+    YAML::Emitter out;
+    out << YAML::Flow << node;
+    values[path] = node.IsScalar() ? node.Scalar() : out.c_str();
+  }
+}
+
 }  // namespace
+
+std::map<std::string, std::string> parameters(const DaemonOptions& options) {
+  std::map<std::string, std::string> values;
+  flatten(YAML::Load(to_yaml(options)), "", values);
+  return values;
+}
+
+Result<DaemonOptions> with_settings(const DaemonOptions& options, const std::vector<std::string>& settings) {
+  auto changed = overlay(options, YAML::Node(YAML::NodeType::Map), "configuration", settings);
+  if (!changed) return changed;
+  if (Result<void> valid = validate(*changed); !valid) return tl::unexpected(valid.error());
+  return changed;
+}
 
 Result<DaemonOptions> parse_daemon_options(std::string_view text, const std::string& source, const std::vector<std::string>& settings) {
   const auto document = parse_yaml(text, source);

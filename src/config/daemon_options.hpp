@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -54,6 +55,20 @@ void visit_fields(LogOptions& o, Visitor&& field) {
   field("file", o.file);
 }
 
+/// Where the robot that asks for grasps stands.
+struct RobotOptions {
+  Transform T_world_base = Transform::Identity();
+  double min_reach_m = 0.15;  ///< Of the tool centre, from the base's origin.
+  double max_reach_m = 0.85;
+};
+
+template <class Visitor>
+void visit_fields(RobotOptions& o, Visitor&& field) {
+  field("T_world_base", o.T_world_base);
+  field("min_reach_m", o.min_reach_m, 0.0, 10.0);
+  field("max_reach_m", o.max_reach_m, 0.01, 100.0);
+}
+
 /// The whole configuration of gfpd.
 struct DaemonOptions {
   int threads = 0;          ///< Of the pipeline; 0: one a core.
@@ -61,6 +76,7 @@ struct DaemonOptions {
   std::string gripper_file; ///< As in config/grippers, relative to the configuration; under what pipeline.gripper says.
   std::vector<SensorConfig> sensors;
   PublishOptions publish;
+  RobotOptions robot;
   LogOptions log;
   PipelineOptions pipeline;
 };
@@ -72,6 +88,7 @@ void visit_fields(DaemonOptions& o, Visitor&& field) {
   field("gripper_file", o.gripper_file);
   field.list("sensors", o.sensors);
   field.section("publish", o.publish);
+  field.section("robot", o.robot);
   field.section("log", o.log);
   field.section("pipeline", o.pipeline);
 }
@@ -94,6 +111,12 @@ Result<DaemonOptions> parse_daemon_options(std::string_view text, const std::str
 
 /// Reads one gripper, as in config/grippers. Errors: as load_daemon_options().
 Result<Gripper> load_gripper_file(const std::filesystem::path& file);
+
+/// `options`, overlaid with settings; validated. Errors: as load_daemon_options().
+Result<DaemonOptions> with_settings(const DaemonOptions& options, const std::vector<std::string>& settings);
+
+/// Every option's path, as in `pipeline.cloud.min_depth_m` or `sensors.0.name`, and its value as the configuration writes it.
+std::map<std::string, std::string> parameters(const DaemonOptions& options);
 
 /// Every option with its value, as YAML that load_daemon_options() reads back to the same.
 std::string to_yaml(const DaemonOptions& options);

@@ -22,22 +22,32 @@ bool same(const SensorConfig& a, const SensorConfig& b) {
 
 Result<std::unique_ptr<Daemon>> Daemon::start(DaemonOptions options, DaemonParts parts, std::uint64_t session) {
   if (options.sensors.empty()) return failure(ErrorCode::kInvalidArgument, "sensors: none is configured, expected at least one");
-  auto publisher = Publisher::start(options.publish, session);
+  std::unique_ptr<Daemon> daemon(new Daemon(options, std::move(parts)));
+  Daemon& self = *daemon;
+  self.desk_ = std::make_unique<ControlDesk>([&self](const v1::ControlRequest& request) { return self.answer(request); },
+                                             [&self](PeerReply reply) {
+                                               MutexLock lock(self.mutex_);
+                                               if (self.publisher_) self.publisher_->put(std::move(reply));
+                                             });
+  auto publisher = Publisher::start(options.publish, session, [&self](PeerRequest request) { self.desk_->put(std::move(request)); });
   if (!publisher) return tl::unexpected(publisher.error());
-  std::unique_ptr<Daemon> daemon(new Daemon(options, std::move(parts), std::move(*publisher)));
+  {
+    MutexLock lock(self.mutex_);  // the desk may be at work already
+    self.publisher_ = std::move(*publisher);
+  }
+  self.pipeline_ = std::jthread([&self](const std::stop_token& stop) { self.run_pipeline(stop); });
   auto sources = daemon->make_sources(options);
   if (!sources) return tl::unexpected(sources.error());
   daemon->start_sensors(options, std::move(*sources));
   return daemon;
 }
 
-Daemon::Daemon(DaemonOptions options, DaemonParts parts, std::unique_ptr<Publisher> publisher)
-    : options_(std::move(options)),
-      parts_(std::move(parts)),
-      publisher_(std::move(publisher)),
-      inbox_(options_.lossless ? HandOver::kLossless : HandOver::kLatestWins),
-      pipeline_options_(std::make_shared<const PipelineOptions>(options_.pipeline)),
-      pipeline_([this](const std::stop_token& stop) { run_pipeline(stop); }) {}
+Daemon::Daemon(DaemonOptions options, DaemonParts parts)
+    : parts_(std::move(parts)),
+      threads_(options.threads),
+      inbox_(options.lossless ? HandOver::kLossless : HandOver::kLatestWins),
+      options_(std::move(options)),
+      pipeline_options_(std::make_shared<const PipelineOptions>(options_.pipeline)) {}
 
 Daemon::~Daemon() { stop(); }
 
@@ -45,11 +55,9 @@ Result<void> Daemon::reload(DaemonOptions options) {
   if (options.sensors.empty()) return failure(ErrorCode::kInvalidArgument, "sensors: none is configured, expected at least one");
   auto sources = make_sources(options);
   if (!sources) return tl::unexpected(sources.error());
-  {
-    MutexLock lock(mutex_);
-    pipeline_options_ = std::make_shared<const PipelineOptions>(options.pipeline);
-  }
   start_sensors(options, std::move(*sources));
+  MutexLock lock(mutex_);
+  pipeline_options_ = std::make_shared<const PipelineOptions>(options.pipeline);
   options_ = std::move(options);
   return {};
 }
@@ -97,19 +105,23 @@ void Daemon::start_sensors(const DaemonOptions& options, Sources sources) {
 }
 
 void Daemon::run_pipeline(const std::stop_token& stop) {
-  tbb::task_arena arena(options_.threads > 0 ? options_.threads : tbb::task_arena::automatic);
+  tbb::task_arena arena(threads_ > 0 ? threads_ : tbb::task_arena::automatic);
   SceneMemory memory;
   while (const std::optional<FramePtr> frame = inbox_.take(stop)) {
     std::shared_ptr<const PipelineOptions> options;
     {
       MutexLock lock(mutex_);
       options = pipeline_options_;
+      last_frames_[(*frame)->sensor] = *frame;
     }
     working_since_ = monotonic_now();
     try {
       PipelineResult result = arena.execute([&] { return parts_.process(**frame, memory, *options); });
       memory = std::move(result.memory);
-      publisher_->put(std::make_shared<const Scene>(std::move(result.scene)));
+      const auto scene = std::make_shared<const Scene>(std::move(result.scene));
+      publisher_->put(scene);
+      MutexLock lock(mutex_);
+      last_scenes_[scene->sensor] = scene;
     } catch (const std::exception& error) {  // memory exhausted, or a bug: it costs this frame
       spdlog::error("sensor {} frame {}: {}", (*frame)->sensor, (*frame)->sequence, error.what());
       working_since_ = Nanoseconds(0);
@@ -145,7 +157,7 @@ void Daemon::stop() {
   pipeline_.request_stop();
   sensors.clear();
   if (pipeline_.joinable()) pipeline_.join();
-  publisher_->stop();
+  if (publisher_) publisher_->stop();  // before the desk, which it may still hand requests to
 }
 
 }  // namespace gfp

@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "config/daemon_options.hpp"
+#include "daemon/control_desk.hpp"
 #include "daemon/frame_inbox.hpp"
 #include "daemon/sensor_worker.hpp"
 #include "gfp/pipeline/process_frame.hpp"
@@ -23,6 +24,7 @@ struct DaemonParts {
 /// gfpd without its command line: sensors, one pipeline, one publisher.
 ///
 ///     SensorWorker (2 threads each) --FrameInbox--> pipeline thread (oneTBB arena) --> Publisher (1 thread)
+///                                                              control requests <--> ControlDesk (1 thread)
 ///
 /// start(), reload(), tick() and stop() belong to one thread, the one that waits for signals.
 class Daemon {
@@ -43,7 +45,7 @@ class Daemon {
   Publisher& publisher() { return *publisher_; }
 
  private:
-  Daemon(DaemonOptions options, DaemonParts parts, std::unique_ptr<Publisher> publisher);
+  Daemon(DaemonOptions options, DaemonParts parts);
 
   using Sensors = std::map<std::string, std::shared_ptr<SensorWorker>>;
   using Sources = std::map<std::string, std::unique_ptr<FrameSource>>;
@@ -54,15 +56,24 @@ class Daemon {
   bool is_at_work(const SensorConfig& sensor) const;
   void run_pipeline(const std::stop_token& stop);
 
+  v1::ControlReply answer(const v1::ControlRequest& request);
+  v1::ControlReply answer_fit(const v1::ControlRequest& request);
+  v1::ControlReply answer_grasp(const v1::ControlRequest& request);
+  v1::ControlReply answer_set_parameters(const v1::ControlRequest& request);
+
   static constexpr Nanoseconds kStuckAfter{20'000'000'000};
 
-  DaemonOptions options_;
   const DaemonParts parts_;
-  std::unique_ptr<Publisher> publisher_;
+  const int threads_;  ///< Of the pipeline; 0: one a core.
   FrameInbox inbox_;
   mutable Mutex mutex_;
+  DaemonOptions options_ GFP_GUARDED_BY(mutex_);
   std::shared_ptr<const PipelineOptions> pipeline_options_ GFP_GUARDED_BY(mutex_);
+  std::map<std::string, FramePtr> last_frames_ GFP_GUARDED_BY(mutex_);  ///< By sensor, as those below.
+  std::map<std::string, ScenePtr> last_scenes_ GFP_GUARDED_BY(mutex_);
   Sensors sensors_ GFP_GUARDED_BY(mutex_);
+  std::unique_ptr<Publisher> publisher_;
+  std::unique_ptr<ControlDesk> desk_;
   std::atomic<Nanoseconds> working_since_{};  ///< Monotonic; 0: the pipeline waits for a frame.
   std::jthread pipeline_;  ///< Last: it uses all of the above.
 };

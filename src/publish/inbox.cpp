@@ -66,6 +66,14 @@ void Inbox::put(v1::LogRecord record) {
   wake();
 }
 
+void Inbox::put(PeerReply reply) {
+  {
+    MutexLock lock(mutex_);
+    content_.replies.push_back(std::move(reply));
+  }
+  wake();
+}
+
 Inbox::Content Inbox::take() {
   std::uint64_t count = 0;
   [[maybe_unused]] const auto got = read(wake_file_, &count, sizeof count);

@@ -11,6 +11,7 @@
 #include "gfp/frame/frame.hpp"
 #include "gfp/scene/scene.hpp"
 #include "gfp/v1/status.pb.h"
+#include "publish/control_socket.hpp"
 
 namespace gfp {
 
@@ -34,6 +35,7 @@ class Inbox {
     std::map<std::string, std::set<std::uint64_t>> lost;  ///< Ids that scenes said were lost, replaced scenes among them.
     std::map<std::string, v1::SensorStatus> statuses;
     std::deque<v1::LogRecord> log;
+    std::deque<PeerReply> replies;
   };
 
   Inbox();
@@ -45,6 +47,7 @@ class Inbox {
   void put(ScenePtr scene);
   void put(v1::SensorStatus status);
   void put(v1::LogRecord record);
+  void put(PeerReply reply);  ///< As many wait at most as whoever makes them has taken on.
   void wake();
 
   int wake_file() const { return wake_file_; }  ///< Readable while something waits.

@@ -17,7 +17,7 @@ namespace gfp {
 /// One XPUB socket with its subscribers' demand and its topics' sequences. One thread at a time.
 class Outlet {
  public:
-  Outlet(PublisherSocket socket, std::uint64_t session) : socket_(std::move(socket)), session_(session) {}
+  Outlet(BoundSocket socket, std::uint64_t session) : socket_(std::move(socket)), session_(session) {}
 
   /// Bytes that travel as they are, after the payload; `owner` keeps them alive until the socket has sent them.
   struct Blob {
@@ -27,6 +27,12 @@ class Outlet {
 
   zmq::socket_t& socket() { return socket_.socket; }
   const Demand& demand() const { return demand_; }
+
+  /// Of the next message of a topic.
+  std::uint64_t next_seq(const std::string& topic) const {
+    const auto found = next_seq_.find(topic);
+    return found == next_seq_.end() ? 0 : found->second;
+  }
 
   /// Takes in waiting subscriptions; calls `joined(prefix)` for each new one.
   template <class Joined>
@@ -48,7 +54,7 @@ class Outlet {
  private:
   std::uint64_t hash_of(const google::protobuf::Descriptor& descriptor);
 
-  PublisherSocket socket_;
+  BoundSocket socket_;
   std::uint64_t session_;
   Demand demand_;
   std::map<std::string, std::uint64_t> next_seq_;

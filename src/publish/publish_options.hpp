@@ -11,7 +11,10 @@ namespace gfp {
 struct PublishOptions {
   std::vector<std::string> sensor_endpoints;  ///< Empty: default_endpoint("sensor").
   std::vector<std::string> state_endpoints;   ///< Empty: default_endpoint("state").
-  bool insecure = false;                      ///< Allows tcp, which is neither encrypted nor authenticated.
+  std::vector<std::string> control_endpoints; ///< Empty: default_endpoint("control").
+  std::string curve_key;                      ///< The daemon's own key (`gfp key new`): tcp is then encrypted and authenticated.
+  std::string authorized_keys;                ///< Folder with the .pub files of those who may connect over tcp.
+  bool insecure = false;                      ///< Allows tcp without a key: neither encrypted nor authenticated.
   int sensor_high_water_mark = 3;             ///< Messages that wait for one slow subscriber before the newest are dropped.
   int state_high_water_mark = 1000;
   double heartbeat_s = 1.0;                   ///< Status, topologies and last values are repeated this often.
@@ -22,6 +25,9 @@ template <class Visitor>
 void visit_fields(PublishOptions& o, Visitor&& field) {
   field("sensor_endpoints", o.sensor_endpoints);
   field("state_endpoints", o.state_endpoints);
+  field("control_endpoints", o.control_endpoints);
+  field("curve_key", o.curve_key);
+  field("authorized_keys", o.authorized_keys);
   field("insecure", o.insecure);
   field("sensor_high_water_mark", o.sensor_high_water_mark, 1, 100);
   field("state_high_water_mark", o.state_high_water_mark, 10, 100'000);

@@ -10,26 +10,63 @@
 
 namespace gfp {
 
-Result<std::unique_ptr<Publisher>> Publisher::start(const PublishOptions& options, std::uint64_t session) {
-  const auto endpoints = [](const std::vector<std::string>& given, const char* name) {
-    return given.empty() ? std::vector<std::string>{wire::default_endpoint(name)} : given;
-  };
-  auto context = std::make_unique<zmq::context_t>(1);
-  auto sensor = bind_publisher(*context, endpoints(options.sensor_endpoints, "sensor"), options.sensor_high_water_mark);
-  if (!sensor) return tl::unexpected(sensor.error());
-  auto state = bind_publisher(*context, endpoints(options.state_endpoints, "state"), options.state_high_water_mark);
-  if (!state) return tl::unexpected(state.error());
-  return std::unique_ptr<Publisher>(new Publisher(options, session, std::move(context), std::move(*sensor), std::move(*state)));
+namespace {
+
+constexpr std::int64_t kMaxSubscriptionBytes = 4096;  ///< Whoever sends more to a publisher is not a subscriber of ours.
+
+std::vector<std::string> or_default(const std::vector<std::string>& given, const char* name) {
+  return given.empty() ? std::vector<std::string>{wire::default_endpoint(name)} : given;
 }
 
-Publisher::Publisher(const PublishOptions& options, std::uint64_t session, std::unique_ptr<zmq::context_t> context, PublisherSocket sensor,
-                     PublisherSocket state)
+}  // namespace
+
+Result<Publisher::Sockets> Publisher::open_sockets(const PublishOptions& options) {
+  Sockets sockets;
+  sockets.context = std::make_unique<zmq::context_t>(1);
+  CurveKey key;
+  if (!options.curve_key.empty()) {
+    auto read = read_curve_key(options.curve_key);
+    if (!read) return tl::unexpected(read.error());
+    if (read->secret_key.empty()) return failure(ErrorCode::kCorruptData, options.curve_key + ": only a public key, expected the daemon's .key file");
+    key = std::move(*read);
+    auto gate = KeyGate::open(*sockets.context, options.authorized_keys);
+    if (!gate) return tl::unexpected(gate.error());
+    sockets.gate = std::move(*gate);
+  }
+  const CurveKey* curve = key.secret_key.empty() ? nullptr : &key;
+  const auto bind = [&](BoundSocket& bound, zmq::socket_type type, const std::vector<std::string>& endpoints, const SocketOptions& socket_options) -> Result<void> {
+    auto made = bind_socket(*sockets.context, type, endpoints, socket_options);
+    if (!made) return tl::unexpected(made.error());
+    bound = std::move(*made);
+    return {};
+  };
+  using Type = zmq::socket_type;
+  if (auto made = bind(sockets.sensor, Type::xpub, or_default(options.sensor_endpoints, "sensor"), {options.sensor_high_water_mark, kMaxSubscriptionBytes, curve}); !made)
+    return tl::unexpected(made.error());
+  if (auto made = bind(sockets.state, Type::xpub, or_default(options.state_endpoints, "state"), {options.state_high_water_mark, kMaxSubscriptionBytes, curve}); !made)
+    return tl::unexpected(made.error());
+  if (auto made = bind(sockets.control, Type::router, or_default(options.control_endpoints, "control"), {ControlSocket::kHighWaterMark, ControlSocket::kMaxRequestBytes, curve}); !made)
+    return tl::unexpected(made.error());
+  return sockets;
+}
+
+Result<std::unique_ptr<Publisher>> Publisher::start(const PublishOptions& options, std::uint64_t session, ControlHandler control) {
+  auto sockets = open_sockets(options);
+  if (!sockets) return tl::unexpected(sockets.error());
+  return std::unique_ptr<Publisher>(new Publisher(options, session, std::move(control), std::move(*sockets)));
+}
+
+Publisher::Publisher(const PublishOptions& options, std::uint64_t session, ControlHandler control, Sockets sockets)
     : options_(options),
       coding_(options.vertices == "int16" ? wire::VertexCoding::kInt16 : wire::VertexCoding::kFloat32),
       started_(monotonic_now()),
-      context_(std::move(context)),
-      sensor_(std::move(sensor), session),
-      state_(std::move(state), session),
+      session_(session),
+      handler_(std::move(control)),
+      context_(std::move(sockets.context)),
+      sensor_(std::move(sockets.sensor), session),
+      state_(std::move(sockets.state), session),
+      control_(std::move(sockets.control)),
+      gate_(std::move(sockets.gate)),
       thread_([this](const std::stop_token& stop) { run(stop); }) {}
 
 Publisher::~Publisher() { stop(); }
@@ -44,8 +81,9 @@ void Publisher::stop() {
 void Publisher::run(const std::stop_token& stop) {
   const auto period = std::chrono::duration_cast<Nanoseconds>(std::chrono::duration<double>(options_.heartbeat_s));
   Nanoseconds next_heartbeat = monotonic_now() + period;
-  std::array<zmq::pollitem_t, 3> items = {{{sensor_.socket().handle(), 0, ZMQ_POLLIN, 0},
+  std::array<zmq::pollitem_t, 4> items = {{{sensor_.socket().handle(), 0, ZMQ_POLLIN, 0},
                                            {state_.socket().handle(), 0, ZMQ_POLLIN, 0},
+                                           {control_.socket().handle(), 0, ZMQ_POLLIN, 0},
                                            {nullptr, inbox_.wake_file(), ZMQ_POLLIN, 0}}};
   while (!stop.stop_requested()) {
     const Nanoseconds next = serve_at_ ? std::min(*serve_at_, next_heartbeat) : next_heartbeat;
@@ -54,6 +92,7 @@ void Publisher::run(const std::stop_token& stop) {
     sensor_.read_subscriptions([](const std::string&) {});
     state_.read_subscriptions([this](const std::string& prefix) { joined(prefix); });
     send_content();
+    control_.read([this](PeerRequest request) { take_request(std::move(request)); });
     if (serve_at_ && monotonic_now() >= *serve_at_) serve_late_joiners();
     if (monotonic_now() < next_heartbeat) continue;
     heartbeat();
@@ -72,6 +111,7 @@ void Publisher::send_content() {
     if (state_.demand().wants(topic)) state_.send(topic, status, {});
     statuses_[name] = std::move(status);
   }
+  for (PeerReply& reply : content.replies) send_reply(std::move(reply));
   if (!state_.demand().wants(wire::kLogTopic)) return;
   for (const v1::LogRecord& record : content.log) state_.send(std::string(wire::kLogTopic), record, {});
 }
@@ -163,7 +203,10 @@ void Publisher::send_topologies(std::string_view below) {
 
 void Publisher::send_daemon_status(const char* state) {
   const std::string topic = wire::status_topic("gfpd");
-  if (!state_.demand().wants(topic)) return;
+  if (state_.demand().wants(topic)) state_.send(topic, daemon_status(state), {});
+}
+
+v1::DaemonStatus Publisher::daemon_status(const char* state) const {
   v1::DaemonStatus status;
   status.set_version(std::string(version()));
   status.set_state(state);
@@ -176,7 +219,8 @@ void Publisher::send_daemon_status(const char* state) {
   status.set_bytes(sensor_.bytes() + state_.bytes());
   status.set_dropped(dropped_);
   status.set_subscriptions(static_cast<std::uint32_t>(sensor_.demand().size() + state_.demand().size()));
-  state_.send(topic, status, {});
+  if (gate_) status.set_refused(gate_->refused());
+  return status;
 }
 
 void Publisher::heartbeat() {

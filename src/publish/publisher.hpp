@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -8,36 +9,50 @@
 #include <thread>
 #include <zmq.hpp>
 
+#include "publish/control_socket.hpp"
 #include "publish/inbox.hpp"
+#include "publish/key_gate.hpp"
 #include "publish/outlet.hpp"
 #include "publish/publish_options.hpp"
 #include "wire/mesh_messages.hpp"
 
 namespace gfp {
 
-/// The only owner of the daemon's data sockets: one thread, two XPUB sockets (DESIGN, endpoints and topics).
+/// Takes requests that the publisher cannot answer by itself; called on the publisher's thread, so it must not block. The answer
+/// comes with put(PeerReply).
+using ControlHandler = std::function<void(PeerRequest)>;
+
+/// The only owner of the daemon's sockets: one thread, two XPUB sockets and a ROUTER (DESIGN, endpoints and topics).
 ///
 ///     drivers, pipeline, log --put()--> Inbox (latest value a kind) --publisher thread--> sensor | state socket
+///     control socket --requests--> snapshots: publisher thread; all else: ControlHandler --put()--> Inbox --> control socket
 ///
 /// State topics repeat their last value once in `heartbeat_s` of silence, topologies and statuses every heartbeat and to each
 /// late joiner at once, so that a subscriber that comes at any time converges. put() is safe from any thread.
 class Publisher {
  public:
   /// Binds the endpoints and starts the thread. `session` tells this start of the daemon from others.
-  /// Errors: kIo (an endpoint that cannot be bound).
-  static Result<std::unique_ptr<Publisher>> start(const PublishOptions& options, std::uint64_t session);
+  /// Errors: kIo (an endpoint that cannot be bound); kNotFound, kCorruptData (the key, the folder of authorized keys).
+  static Result<std::unique_ptr<Publisher>> start(const PublishOptions& options, std::uint64_t session, ControlHandler control = {});
   ~Publisher();  ///< As stop().
 
   void put(FramePtr frame) { inbox_.put(std::move(frame)); }
   void put(ScenePtr scene) { inbox_.put(std::move(scene)); }
   void put(v1::SensorStatus status) { inbox_.put(std::move(status)); }
   void put(v1::LogRecord record) { inbox_.put(std::move(record)); }
+  void put(PeerReply reply) { inbox_.put(std::move(reply)); }
 
   /// Sends what waits and the daemon's last status, then closes the sockets (up to half a second for slow subscribers).
   void stop();
 
  private:
-  Publisher(const PublishOptions& options, std::uint64_t session, std::unique_ptr<zmq::context_t> context, PublisherSocket sensor, PublisherSocket state);
+  struct Sockets {
+    std::unique_ptr<zmq::context_t> context;
+    std::unique_ptr<KeyGate> gate;  ///< Empty: tcp is open to everybody, or to nobody.
+    BoundSocket sensor, state, control;
+  };
+  static Result<Sockets> open_sockets(const PublishOptions& options);
+  Publisher(const PublishOptions& options, std::uint64_t session, ControlHandler control, Sockets sockets);
 
   void run(const std::stop_token& stop);
   void send_content();
@@ -49,8 +64,12 @@ class Publisher {
   void send_topology(const FittedModel& model);
   void send_topologies(std::string_view below);
   void send_daemon_status(const char* state);
+  v1::DaemonStatus daemon_status(const char* state) const;
   void heartbeat();
   void joined(const std::string& prefix);
+  void take_request(PeerRequest request);
+  void send_reply(PeerReply reply);
+  v1::ControlReply snapshot(const v1::ControlRequest& request) const;
 
   struct KnownTopology {
     std::shared_ptr<const Topology> topology;
@@ -67,10 +86,14 @@ class Publisher {
   const PublishOptions options_;
   const wire::VertexCoding coding_;
   const Nanoseconds started_;
+  const std::uint64_t session_;
+  const ControlHandler handler_;
   std::unique_ptr<zmq::context_t> context_;
   Inbox inbox_;
   // From here on: the publisher thread's own.
   Outlet sensor_, state_;
+  ControlSocket control_;
+  std::unique_ptr<KeyGate> gate_;  ///< After the sockets: it ends the context's work before they close.
   std::map<std::uint64_t, KnownTopology> topologies_;
   std::map<std::string, LastScene> last_scenes_;  ///< By sensor.
   std::map<std::string, v1::SensorStatus> statuses_;

@@ -5,16 +5,17 @@
 #include <sys/file.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
-#include <cstdint>
 #include <cstring>
 #include <filesystem>
+
+#include "publish/key_gate.hpp"
 
 namespace gfp {
 namespace {
 
-constexpr std::int64_t kMaxSubscriptionBytes = 4096;  ///< Whoever sends more to a publisher is not a subscriber of ours.
-constexpr int kLingerMs = 500;               ///< What is left to send at the end may take so long.
+constexpr int kLingerMs = 500;  ///< What is left to send at the end may take so long.
 
 }  // namespace
 
@@ -41,29 +42,49 @@ EndpointLock::~EndpointLock() {
   if (file_ >= 0) close(file_);
 }
 
-Result<PublisherSocket> bind_publisher(zmq::context_t& context, const std::vector<std::string>& endpoints, int high_water_mark) {
-  PublisherSocket bound;
+namespace {
+
+zmq::socket_t make_socket(zmq::context_t& context, zmq::socket_type type, const SocketOptions& options) {
+  zmq::socket_t socket(context, type);
+  socket.set(zmq::sockopt::sndhwm, options.high_water_mark);
+  socket.set(zmq::sockopt::rcvhwm, options.high_water_mark);
+  if (type == zmq::socket_type::xpub) socket.set(zmq::sockopt::xpub_verbose, true);  // each late joiner is seen, and gets what it needs at once
+  socket.set(zmq::sockopt::linger, kLingerMs);
+  socket.set(zmq::sockopt::maxmsgsize, options.max_message_bytes);
+  socket.set(zmq::sockopt::heartbeat_ivl, 1000);
+  socket.set(zmq::sockopt::heartbeat_timeout, 3000);
+  socket.set(zmq::sockopt::handshake_ivl, 3000);
+  socket.set(zmq::sockopt::ipv6, true);
+  return socket;
+}
+
+/// ZeroMQ copies a socket's options when an endpoint is bound: the same socket serves ipc as it is, and tcp behind the key.
+void protect(zmq::socket_t& socket, const CurveKey& key) {
+  socket.set(zmq::sockopt::curve_server, true);
+  socket.set(zmq::sockopt::curve_secretkey, key.secret_key);
+  socket.set(zmq::sockopt::zap_domain, KeyGate::kDomain);
+}
+
+}  // namespace
+
+Result<BoundSocket> bind_socket(zmq::context_t& context, zmq::socket_type type, const std::vector<std::string>& endpoints, const SocketOptions& options) {
+  BoundSocket bound;
+  std::vector<std::string> ordered = endpoints;
+  const auto first_tcp = std::stable_partition(ordered.begin(), ordered.end(), [](const std::string& endpoint) { return !endpoint.starts_with("tcp://"); });
   try {
-    bound.socket = zmq::socket_t(context, zmq::socket_type::xpub);
-    bound.socket.set(zmq::sockopt::sndhwm, high_water_mark);
-    bound.socket.set(zmq::sockopt::xpub_verbose, true);  // each late joiner is seen, and gets what it needs at once
-    bound.socket.set(zmq::sockopt::linger, kLingerMs);
-    bound.socket.set(zmq::sockopt::maxmsgsize, kMaxSubscriptionBytes);
-    bound.socket.set(zmq::sockopt::heartbeat_ivl, 1000);
-    bound.socket.set(zmq::sockopt::heartbeat_timeout, 3000);
-    bound.socket.set(zmq::sockopt::handshake_ivl, 3000);
-    bound.socket.set(zmq::sockopt::ipv6, true);
+    bound.socket = make_socket(context, type, options);
   } catch (const zmq::error_t& error) {
-    return failure(ErrorCode::kIo, fmt::format("publisher socket: {}", error.what()));
+    return failure(ErrorCode::kIo, fmt::format("socket: {}", error.what()));
   }
-  for (const std::string& endpoint : endpoints) {
-    auto lock = EndpointLock::take(endpoint);
+  for (auto endpoint = ordered.begin(); endpoint != ordered.end(); ++endpoint) {
+    auto lock = EndpointLock::take(*endpoint);
     if (!lock) return tl::unexpected(lock.error());
     bound.locks.push_back(std::move(*lock));
     try {
-      bound.socket.bind(endpoint);
+      if (endpoint == first_tcp && options.curve_key != nullptr) protect(bound.socket, *options.curve_key);
+      bound.socket.bind(*endpoint);
     } catch (const zmq::error_t& error) {
-      return failure(ErrorCode::kIo, fmt::format("{}: {}", endpoint, error.what()));
+      return failure(ErrorCode::kIo, fmt::format("{}: {}", *endpoint, error.what()));
     }
   }
   return bound;

@@ -1,10 +1,12 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
 #include <zmq.hpp>
 
+#include "gfp/client/curve_key.hpp"
 #include "gfp/core/error.hpp"
 
 namespace gfp {
@@ -23,13 +25,20 @@ class EndpointLock {
   int file_;
 };
 
-/// One XPUB socket, bound to its endpoints. One thread at a time.
-struct PublisherSocket {
+/// A socket, bound to its endpoints, with the locks of those that are files. One thread at a time.
+struct BoundSocket {
   std::vector<EndpointLock> locks;
   zmq::socket_t socket;
 };
 
+/// What holds for all of the daemon's sockets.
+struct SocketOptions {
+  int high_water_mark = 1000;          ///< Messages that wait for one slow peer.
+  std::int64_t max_message_bytes = 0;  ///< A peer that sends more is not one of ours: it is cut off before it is read.
+  const CurveKey* curve_key = nullptr; ///< tcp endpoints are encrypted with it, and their peers have to pass the KeyGate.
+};
+
 /// Errors: kIo, naming the endpoint and what the system said.
-Result<PublisherSocket> bind_publisher(zmq::context_t& context, const std::vector<std::string>& endpoints, int high_water_mark);
+Result<BoundSocket> bind_socket(zmq::context_t& context, zmq::socket_type type, const std::vector<std::string>& endpoints, const SocketOptions& options);
 
 }  // namespace gfp

@@ -7,6 +7,10 @@
 #include <span>
 
 #include "gfp/core/sha256.hpp"
+#include "gfp/v1/control.pb.h"
+#include "gfp/v1/envelope.pb.h"
+#include "gfp/v1/sensor.pb.h"
+#include "gfp/v1/status.pb.h"
 
 namespace gfp::wire {
 namespace {
@@ -31,6 +35,15 @@ std::uint64_t schema_hash(const google::protobuf::Descriptor& descriptor) {
   Sha256 hash;
   hash.put(std::as_bytes(std::span(files)));
   return hash.digest64();
+}
+
+std::string all_descriptors() {
+  google::protobuf::FileDescriptorSet files;
+  std::set<std::string> seen;
+  // What the scene, mesh and geometry are made of comes with the control messages.
+  for (const auto* descriptor : {v1::Envelope::descriptor(), v1::ControlRequest::descriptor(), v1::DepthImage::descriptor(), v1::SensorStatus::descriptor()})
+    append(*descriptor->file(), seen, files);
+  return files.SerializeAsString();
 }
 
 }  // namespace gfp::wire

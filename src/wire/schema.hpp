@@ -13,4 +13,7 @@ std::string descriptor_set(const google::protobuf::Descriptor& descriptor);
 /// First 8 bytes, big-endian, of the SHA-256 of descriptor_set(): `Envelope.schema_hash`.
 std::uint64_t schema_hash(const google::protobuf::Descriptor& descriptor);
 
+/// The FileDescriptorSet of every message that travels, as in gfp.desc.
+std::string all_descriptors();
+
 }  // namespace gfp::wire

@@ -87,7 +87,7 @@ TEST(DaemonOptions, WhatOneFieldCannotSayIsValidated) {
   EXPECT_EQ(what("sensors: [{name: a}, {name: a}]"), "f.yaml: sensors.1.name = a, expected a name no other sensor has");
   EXPECT_EQ(what("sensors: [{name: Front}]"), "f.yaml: sensors.0.name = Front, expected 1 to 64 of a-z, 0-9 and _");
   EXPECT_EQ(what("publish: {state_endpoints: ['udp://x']}"), "f.yaml: publish.state_endpoints = udp://x, expected ipc://, inproc:// or tcp://");
-  EXPECT_NE(what("publish: {state_endpoints: ['tcp://*:5602']}").find("neither encrypted nor authenticated"), std::string::npos);
+  EXPECT_NE(what("publish: {state_endpoints: ['tcp://*:5602']}").find("unencrypted and for everybody"), std::string::npos);
   EXPECT_EQ(what("publish: {state_endpoints: ['tcp://*:5602'], insecure: true}"), "");
   EXPECT_EQ(what("pipeline: {cloud: {min_depth_m: 2, max_depth_m: 1}}"),
             "f.yaml: pipeline.cloud.min_depth_m = 2, expected less than max_depth_m = 1");

@@ -43,7 +43,7 @@ TEST(YamlDocument, RefusesWhatIsTooLargeDeepOrAliased) {
   for (int i = 0; i < kMaxNodes + 1; ++i) many += "1,";
   EXPECT_NE(error_of(many + "]").what.find("more than 20000 values"), std::string::npos);
   std::string laughs = "a0: &a0 [x, x]\n";
-  for (int i = 1; i < 70; ++i) laughs += "a" + std::to_string(i) + ": &a" + std::to_string(i) + " [*a" + std::to_string(i - 1) + ", *a0]\n";
+  for (int i = 1; i < 70; ++i) laughs.append("a").append(std::to_string(i)).append(": &a").append(std::to_string(i)).append(" [*a").append(std::to_string(i - 1)).append(", *a0]\n");
   EXPECT_NE(error_of(laughs).what.find("more than 64 aliases"), std::string::npos);
 }
 

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <stdexcept>
 
+#include "gfp/client/control_client.hpp"
 #include "gfp/client/scene_subscriber.hpp"
 #include "support/hand_made_scene.hpp"
 #include "support/temporary_folder.hpp"
@@ -46,6 +47,7 @@ struct Bench {
   Bench() {
     options.publish.sensor_endpoints = {"ipc://" + (folder / "sensor").string()};
     options.publish.state_endpoints = {"ipc://" + (folder / "state").string()};
+    options.publish.control_endpoints = {"ipc://" + (folder / "control").string()};
     options.publish.heartbeat_s = 0.05;
     options.sensors = {SensorConfig{}};
     options.sensors[0].name = "front";
@@ -67,7 +69,12 @@ struct Bench {
               return result;
             }};
   }
-  SubscriberOptions subscriber() const { return {{options.publish.sensor_endpoints[0], options.publish.state_endpoints[0]}}; }
+  ControlOptions control() const { return {options.publish.control_endpoints[0], 20s, {}}; }
+  SubscriberOptions subscriber() const {
+    SubscriberOptions made;
+    made.endpoints = {options.publish.sensor_endpoints[0], options.publish.state_endpoints[0]};
+    return made;
+  }
 };
 
 template <class Condition>
@@ -156,6 +163,81 @@ TEST(Daemon, StoppingTwiceIsStoppingOnce) {
   auto daemon = Daemon::start(bench.options, bench.parts(), 1);
   (*daemon)->stop();
   (*daemon)->stop();
+}
+
+TEST(DaemonControl, ParametersHoldFromTheNextFrameOn) {
+  Bench bench;
+  auto daemon = Daemon::start(bench.options, bench.parts(), 5);
+  auto client = ControlClient::connect(bench.control());
+  const auto before = client->parameters({"pipeline.segmentation."});
+  ASSERT_TRUE(before.has_value()) << before.error().what;
+  EXPECT_EQ(before->at("pipeline.segmentation.min_height_m"), "0.01");
+  const auto after = client->set_parameters({{"pipeline.segmentation.min_height_m", "0.02"}});
+  ASSERT_TRUE(after.has_value()) << after.error().what;
+  EXPECT_EQ(*after, (std::map<std::string, std::string>{{"pipeline.segmentation.min_height_m", "0.02"}}));
+  EXPECT_TRUE(eventually([&] { return bench.seen_min_height_m == 0.02; }));
+}
+
+// All or nothing, with the error that the configuration file would have got; sensors and endpoints are not for clients to change.
+TEST(DaemonControl, BadParametersChangeNothing) {
+  Bench bench;
+  auto daemon = Daemon::start(bench.options, bench.parts(), 5);
+  auto client = ControlClient::connect(bench.control());
+  const auto refused = [&](const std::string& path, const std::string& value) {
+    const auto reply = client->set_parameters({{"pipeline.segmentation.min_points", "123"}, {path, value}});
+    return reply ? std::string() : reply.error().what;
+  };
+  EXPECT_NE(refused("pipeline.segmentation.min_height_m", "-1").find("min_height_m"), std::string::npos);
+  EXPECT_NE(refused("pipeline.segmentation.min_heigth_m", "0.1").find("did you mean"), std::string::npos);
+  EXPECT_NE(refused("sensors.0.name", "back").find("only what is below pipeline."), std::string::npos);
+  EXPECT_EQ(client->parameters({"pipeline.segmentation.min_points"})->begin()->second, "300");
+}
+
+TEST(DaemonControl, FitsAnewWhatStandsInARegion) {
+  Bench bench;
+  auto daemon = Daemon::start(bench.options, bench.parts(), 5);
+  auto client = ControlClient::connect(bench.control());
+  ASSERT_TRUE(eventually([&] { return bench.processed > 0; }));
+  const auto all = client->fit();
+  ASSERT_TRUE(all.has_value()) << all.error().what;
+  EXPECT_EQ(all->objects.size(), 2U);  // their boxes have the centre (35, 55)
+  EXPECT_TRUE(has_all_meshes(*all));
+  EXPECT_EQ(client->fit("front", {{30, 50, 36, 56}})->objects.size(), 2U);
+  EXPECT_EQ(client->fit("front", {{36, 50, 600, 400}})->objects.size(), 0U);
+  const auto nowhere = client->fit("back");
+  ASSERT_FALSE(nowhere.has_value());
+  EXPECT_EQ(nowhere.error().code, ErrorCode::kNotFound);
+  EXPECT_NE(nowhere.error().what.find("back"), std::string::npos);
+}
+
+// In the base's frame, the best that is sure enough and within reach; where there is none, the reason.
+TEST(DaemonControl, TheBestGraspIsOneThatTheRobotReaches) {
+  Bench bench;
+  Scene scene = test::hand_made_scene(2);
+  std::vector<Grasp>& grasps = scene.objects[0].grasps.grasps;
+  for (Grasp& grasp : grasps) grasp.abstain = false;
+  bench.options.robot.T_world_base = scene.T_world_sensor * grasps[1].T_camera_tcp * Eigen::Translation3d(0, 0, -0.5);  // 0.5 m from the second
+  const Transform T_base_camera = bench.options.robot.T_world_base.inverse() * scene.T_world_sensor;
+  grasps[1].T_camera_pregrasp_tcp = grasps[1].T_camera_tcp;
+  const double first_m = (T_base_camera * grasps[0].T_camera_tcp).translation().norm();
+  bench.options.robot.min_reach_m = 0.49;
+  bench.options.robot.max_reach_m = 0.51;
+  ASSERT_TRUE(first_m < 0.49 || first_m > 0.51) << "the first grasp is within reach too: " << first_m;
+  DaemonParts parts = bench.parts();
+  parts.process = [&](const Frame& frame, const SceneMemory& memory, const PipelineOptions&) {
+    PipelineResult result{scene, memory};
+    result.scene.sensor = frame.sensor;
+    return result;
+  };
+  auto daemon = Daemon::start(bench.options, parts, 5);
+  auto client = ControlClient::connect(bench.control());
+  Result<ReachableGrasp> found = failure(ErrorCode::kTimeout, "");
+  ASSERT_TRUE(eventually([&] { return (found = client->best_grasp(1)).has_value(); })) << found.error().what;
+  EXPECT_EQ(found->grasp.width_m, grasps[1].width_m);
+  EXPECT_TRUE(found->T_base_tcp.isApprox(T_base_camera * grasps[1].T_camera_tcp, 1e-9));
+  EXPECT_NEAR(found->T_base_tcp.translation().norm(), 0.5, 1e-9);
+  EXPECT_NE(client->best_grasp(2).error().what.find("too_wide"), std::string::npos);
+  EXPECT_NE(client->best_grasp(999).error().what.find("999"), std::string::npos);
 }
 
 }  // namespace

@@ -80,6 +80,58 @@ def check_python_client():
     return len(scene.objects)
 
 
+def check_control():
+    """What the control socket answers, and a client that learns its messages from it."""
+    from gfp_client import Control
+
+    control = Control(timeout_s=DEADLINE_S)
+    topics = [topic for topic, _, _ in control.snapshot("/gfp/")]
+    assert "/gfp/scene/" in topics and "/gfp/status/gfpd/" in topics, topics
+    fitted = control.fit(region_px=(0, 0, 640, 480))
+    assert fitted and all(thing.triangles is not None for thing in fitted), "a fit without its meshes"
+    assert control.set_parameters(**{"pipeline.segmentation.min_points": 301}) == {"pipeline.segmentation.min_points": "301"}
+    try:
+        control.set_parameters(**{"pipeline.segmentation.min_points": -1})
+        raise AssertionError("a parameter out of its range was taken")
+    except RuntimeError as refused:
+        assert "min_points" in str(refused), refused
+    alone = {key: value for key, value in os.environ.items() if key not in ("GFP_DESCRIPTORS", "PYTHONPATH")}
+    client = pathlib.Path(os.environ["RUNTIME_DIRECTORY"]) / "gfp_client.py"  # away from any gfp.desc
+    client.write_text(pathlib.Path(sys.modules["gfp_client"].__file__).read_text())
+    learnt = subprocess.run([sys.executable, "-c", "import gfp_client; print(len(gfp_client.MESSAGES))"], env=alone, cwd=client.parent, capture_output=True, text=True, timeout=DEADLINE_S)
+    assert learnt.returncode == 0 and int(learnt.stdout) > 20, learnt.stderr
+
+
+def check_curve(folder):
+    """tcp with keys: who is authorized is served, in Python and by the tools; who is not gets nothing."""
+    from gfp_client import Curve, SceneSubscriber
+
+    folder = pathlib.Path(folder)
+    for name in ("robot", "alice", "mallory"):
+        assert run(GFP, "key", "new", str(folder / name)).returncode == 0
+    (folder / "authorized").mkdir()
+    (folder / "alice.pub").rename(folder / "authorized" / "alice.pub")
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        tcp = f"tcp://127.0.0.1:{probe.getsockname()[1]}"
+    config = folder / "curve.yaml"
+    publish = "".join(f"  {name}_endpoints: ['ipc://{folder}/curve/{name}'{', ' + repr(tcp) if name == 'state' else ''}]\n" for name in ("sensor", "state", "control"))
+    config.write_text(CONFIG + "publish:\n" + publish)
+    assert run(GFPD, "--config", str(config)).returncode == 78, "tcp was opened without a key"
+    config.write_text(config.read_text() + f"  curve_key: {folder}/robot.key\n  authorized_keys: {folder}/authorized\n")
+    daemon = subprocess.Popen([GFPD, "--config", str(config)], stderr=subprocess.DEVNULL)
+    try:
+        scenes = SceneSubscriber([tcp], curve=Curve(folder / "robot.pub", folder / "alice.key"))
+        assert wait_for("a scene over tcp with CURVE", lambda: scenes.next(1)).header.sensor == "virtual"
+        keys = ["--endpoint", tcp, "--server-key", str(folder / "robot.pub"), "--key"]
+        top = run(GFP, "top", "--count", "1", "--json", *keys, str(folder / "alice.key"))
+        assert top.returncode == 0 and "status" in top.stdout, top.stderr
+        assert run(GFP, "top", "--seconds", "1", *keys, str(folder / "mallory.key")).returncode == 69, "a stranger was served"
+    finally:
+        daemon.kill()
+        daemon.wait()
+
+
 def run(*command):
     return subprocess.run(command, capture_output=True, text=True, timeout=DEADLINE_S)
 
@@ -126,7 +178,9 @@ def main():
         try:
             assert manager.recv(100) == b"READY=1" and manager.recv(100) == b"WATCHDOG=1", "not what Type=notify waits for"
             objects = check_python_client()
+            check_control()
             check_tools()
+            check_curve(folder)
             check_reload(daemon, config)
             second = run(GFPD, "--config", str(config))
             assert second.returncode == 69 and "another gfpd" in second.stderr, second.stderr

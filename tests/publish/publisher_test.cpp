@@ -4,8 +4,7 @@
 
 #include "gfp/client/scene_subscriber.hpp"
 #include "gfp/v1/status.pb.h"
-#include "support/hand_made_scene.hpp"
-#include "support/temporary_folder.hpp"
+#include "publish/stage.hpp"
 #include "wire/scene_json.hpp"
 
 namespace gfp {
@@ -13,31 +12,9 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr auto kLong = 20s;  // a deadline, not a wait: tests end with the message they expect
-
-/// A publisher with endpoints of its own, and what subscribes to it.
-struct Stage {
-  test::TemporaryFolder folder;
-  PublishOptions options;
-  SubscriberOptions subscriber;
-  std::unique_ptr<Publisher> publisher;
-
-  explicit Stage(double heartbeat_s = 0.05) {
-    options.sensor_endpoints = {"ipc://" + (folder / "sensor").string()};
-    options.state_endpoints = {"ipc://" + (folder / "state").string()};
-    options.heartbeat_s = heartbeat_s;
-    subscriber.endpoints = {options.sensor_endpoints[0], options.state_endpoints[0]};
-    start(1);
-  }
-  void start(std::uint64_t session) {
-    publisher.reset();
-    auto started = Publisher::start(options, session);
-    ASSERT_TRUE(started.has_value()) << started.error().what;
-    publisher = std::move(*started);
-  }
-};
-
-ScenePtr shared(Scene scene) { return std::make_shared<const Scene>(std::move(scene)); }
+using test::kLong;
+using test::shared;
+using test::Stage;
 
 /// The next message that `wanted` accepts.
 template <class Wanted>

@@ -19,6 +19,7 @@ class SceneSubscriber {
   /// The next scene. Errors: kTimeout; kCorruptData, kTooLarge (one message was skipped: ask again).
   Result<Scene> next(std::chrono::milliseconds timeout);
   const SubscriberCounts& counts() const { return subscriber_.counts(); }
+  double silent_for_s() const { return subscriber_.silent_for_s(); }
 
  private:
   explicit SceneSubscriber(Subscriber subscriber) : subscriber_(std::move(subscriber)) {}

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "gfp/client/curve_key.hpp"
 #include "gfp/core/error.hpp"
 #include "gfp/core/time.hpp"
 #include "gfp/frame/frame.hpp"
@@ -27,10 +28,17 @@ struct Message {
   std::string blob;                      ///< Pixels of images; else empty.
 };
 
+/// What a client needs for a daemon that serves tcp with CURVE. Empty: unencrypted, as over ipc.
+struct CurveAccess {
+  std::string server_public_key;  ///< Of the daemon.
+  CurveKey key;                   ///< One's own; its public half has to be among the daemon's authorized keys.
+};
+
 struct SubscriberOptions {
   std::vector<std::string> endpoints;  ///< Empty: the default ones of this host that carry the topics.
   double stale_after_s = 1.0;          ///< Messages older than this on arrival are counted as stale.
   int high_water_mark = 1000;          ///< Messages that wait here before new ones are lost.
+  CurveAccess curve;
 };
 
 /// What happened on the way; all since connect().
@@ -56,6 +64,9 @@ class Subscriber {
   /// The next message. Errors: kTimeout, kCorruptData (one message was skipped: ask again), kIo.
   Result<Message> receive(std::chrono::milliseconds timeout);
   const SubscriberCounts& counts() const;
+
+  /// Time since the last message, or since connect(). A daemon says something every second: /gfp/status/gfpd/.
+  double silent_for_s() const;
 
  private:
   struct Sockets;

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <filesystem>
+#include <set>
+#include <string>
+#include <thread>
+#include <zmq.hpp>
+
+#include "gfp/core/error.hpp"
+#include "gfp/core/time.hpp"
+
+namespace gfp {
+
+/// Who may connect with CURVE: those whose public key is in a `.pub` file of a folder, as with authorized keys of ssh. The ZAP
+/// handler (RFC 27) of one ZeroMQ context, on a thread of its own. The folder is read again at most a second later, so that a
+/// file that is added or removed holds for every connection after that; connections that stand are not cut.
+class KeyGate {
+ public:
+  /// Must come before the context's other sockets. Errors: kNotFound (no such folder), kIo.
+  static Result<std::unique_ptr<KeyGate>> open(zmq::context_t& context, std::filesystem::path folder);
+  ~KeyGate();  ///< Shuts the context down: close the other sockets' work before.
+
+  std::uint64_t refused() const { return refused_; }
+
+  static constexpr const char* kDomain = "gfp";
+
+ private:
+  KeyGate(zmq::context_t& context, std::filesystem::path folder, zmq::socket_t socket);
+  void run();
+  bool is_authorized(const std::string& public_key);
+
+  static constexpr Nanoseconds kReadAgain{1'000'000'000};
+  static constexpr std::size_t kMaxKeys = 10'000;
+
+  zmq::context_t& context_;
+  const std::filesystem::path folder_;
+  zmq::socket_t socket_;
+  std::set<std::string> keys_;  ///< Z85. The thread's own.
+  Nanoseconds read_{-kReadAgain};
+  std::atomic<std::uint64_t> refused_ = 0;
+  std::jthread thread_;  ///< Last: it uses all of the above.
+};
+
+}  // namespace gfp
