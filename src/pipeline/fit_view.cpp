@@ -5,8 +5,10 @@
 #include <utility>
 
 #include "gfp/modelling/fit_superquadric.hpp"
+#include "gfp/modelling/follow_model.hpp"
 #include "gfp/modelling/model_contour.hpp"
 #include "gfp/recognition/recognise.hpp"
+#include "gfp/registration/follow_shape.hpp"
 #include "gfp/registration/register_primitive.hpp"
 #include "gfp/selection/select_models.hpp"
 #include "pipeline/methods.hpp"
@@ -43,8 +45,22 @@ std::vector<Candidate> search(const ObjectView& view, const PrimitiveLibrary& li
   return candidates;
 }
 
-/// Follows what the object was in the last frame; nothing where that can't be followed.
-std::vector<Candidate> track(const ObjectView& view, const PrimitiveLibrary& library, const PipelineOptions& options, StageTimings& timings) {
+/// Whether it is this fit's turn. Objects that came together take turns, so that no frame has to do it for all of them.
+bool is_due(const ObjectView& view, int every) { return (static_cast<std::uint64_t>(view.warm_start->fits) + 7 * view.id) % static_cast<std::uint64_t>(every) == 0; }
+
+/// The last frame's shape where it is now; nothing where it is due to be fitted again, or is no longer right.
+std::optional<FittedModel> follow(const ObjectView& view, const PipelineOptions& options, StageTimings& timings) {
+  const WarmStart& warm = *view.warm_start;
+  if (!warm.model || is_due(view, options.budget.reshape_every)) return std::nullopt;
+  const FollowedPose pose = timings.measure(
+      "registration", [&] { return follow_shape(view, warm.model->vertices, warm.model->topology, warm.T_camera_object, options.registration); });
+  FittedModel model = timings.measure("modelling", [&] { return follow_model(view, *warm.model, pose); });
+  if (model.evidence.cost > warm.cost + options.budget.shape_cost_slack) return std::nullopt;
+  return model;
+}
+
+/// What the object was in the last frame, shaped anew; nothing where that can't be followed.
+std::vector<Candidate> reshape(const ObjectView& view, const PrimitiveLibrary& library, const PipelineOptions& options, StageTimings& timings) {
   if (view.warm_start->method == kSuperquadric) return fit_superquadric_only(view, library, options, timings);
   const Hypothesis known{library.find(view.warm_start->primitive), 0.0, {}};
   if (!known.primitive) return {};
@@ -58,12 +74,13 @@ bool is_as_good_as(const WarmStart& before, const std::vector<Candidate>& candid
 }  // namespace
 
 bool is_tracked(const ObjectView& view, const FitBudgetOptions& options) {
-  return view.warm_start && view.warm_start->fits % options.search_every != 0;
+  return view.warm_start && !is_due(view, options.search_every);
 }
 
 std::vector<Candidate> fit_gfp_robust(const ObjectView& view, const PrimitiveLibrary& library, const PipelineOptions& options, StageTimings& timings) {
   if (is_tracked(view, options.budget)) {
-    auto candidates = track(view, library, options, timings);
+    if (auto model = follow(view, options, timings)) return {{std::move(*model), 0.0}};
+    auto candidates = reshape(view, library, options, timings);
     if (is_as_good_as(*view.warm_start, candidates, options.budget.warm_cost_slack)) return candidates;
   }
   return search(view, library, options, timings);

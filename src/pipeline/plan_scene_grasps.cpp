@@ -64,39 +64,74 @@ std::vector<Eigen::Vector3f> obstacles_of(const ObjectView& view, const Segments
   return points;
 }
 
-GraspScene surroundings(std::size_t self, const std::vector<SceneObject>& objects, const std::vector<Sphere>& balls, const ObjectView& view, double reach) {
+GraspScene surroundings(std::size_t self, const std::vector<GraspSubject>& subjects, const std::vector<Sphere>& balls, double reach) {
   GraspScene scene;
-  scene.has_support = view.has_support;
-  scene.T_camera_support = view.T_camera_support;
-  for (std::size_t i = 0; i < objects.size(); ++i)
-    if (i != self && within(balls[i], balls[self], reach)) scene.neighbours.push_back(&objects[i].model);
+  scene.has_support = subjects[self].view->has_support;
+  scene.T_camera_support = subjects[self].view->T_camera_support;
+  for (std::size_t i = 0; i < subjects.size(); ++i)
+    if (i != self && within(balls[i], balls[self], reach)) scene.neighbours.push_back(&subjects[i].object->model);
   return scene;
 }
 
-bool changed(const SceneObject& object) { return object.status != ObjectStatus::kUnchanged; }
+constexpr double kSamePlaceM = 0.003;  ///< What moves by less is where it was: the gripper's clearance.
+
+/// How far `other` moved as seen from `self`, by some of its vertices; large where it has another mesh.
+double moved_m(const GraspSubject& self, const GraspSubject& other) {
+  const auto &now = other.object->model.vertices, &before = other.before->model.vertices;
+  if (now.size() != before.size()) return 1.0;
+  const Transform T_self_other = self.object->model.T_camera_object.inverse() * other.object->model.T_camera_object;
+  const Transform T_self_other_before = self.before->model.T_camera_object.inverse() * other.before->model.T_camera_object;
+  double farthest = 0;
+  for (std::size_t i = 0; i < now.size(); i += 16) farthest = std::max(farthest, (T_self_other * now[i] - T_self_other_before * before[i]).norm());
+  return farthest;
+}
+
+bool stands_as_before(const GraspSubject& subject) {
+  if (subject.view->has_support != subject.view_before->has_support) return false;
+  if (!subject.view->has_support) return true;
+  const Transform T_object_support = subject.object->model.T_camera_object.inverse() * subject.view->T_camera_support;
+  const Transform T_object_support_before = subject.before->model.T_camera_object.inverse() * subject.view_before->T_camera_support;
+  const Eigen::Vector3d up = T_object_support.linear().col(2), up_before = T_object_support_before.linear().col(2);
+  const double rises = up.dot(T_object_support.translation()) - up_before.dot(T_object_support_before.translation());
+  const double tilts = (up - up_before).norm() * bounds(subject.object->model.vertices).size().norm();
+  return std::abs(rises) < kSamePlaceM && tilts < kSamePlaceM;
+}
+
+bool is_carried(const GraspSubject& subject) {
+  return subject.before && subject.view_before && subject.object->model.vertices == subject.before->model.vertices && stands_as_before(subject);
+}
+
+bool neighbours_stayed(std::size_t self, const std::vector<GraspSubject>& subjects, const std::vector<Sphere>& balls, double reach) {
+  for (std::size_t i = 0; i < subjects.size(); ++i) {
+    if (i == self || !within(balls[i], balls[self], reach)) continue;
+    if (!subjects[i].before || moved_m(subjects[self], subjects[i]) > kSamePlaceM) return false;
+  }
+  return true;
+}
 
 }  // namespace
 
-void plan_scene_grasps(std::vector<SceneObject>& objects, const std::vector<const ObjectView*>& views, const Segments& segments,
-                       const OrganizedCloud& cloud, const std::vector<const SceneObject*>& left, const PipelineOptions& options) {
+void plan_scene_grasps(const std::vector<GraspSubject>& subjects, const Segments& segments, const OrganizedCloud& cloud,
+                       const std::vector<const SceneObject*>& left, const PipelineOptions& options) {
   const double reach = reach_m(options);
-  std::vector<Sphere> balls, stirred;  // around every object, and around what moved, came or went
-  for (const SceneObject& object : objects) {
-    balls.push_back(ball_around(object));
-    if (changed(object)) stirred.push_back(balls.back());
-  }
-  for (const SceneObject* object : left) stirred.push_back(ball_around(*object));
+  std::vector<Sphere> balls, gaps;  // around every object, and around what is gone
+  for (const GraspSubject& subject : subjects) balls.push_back(ball_around(*subject.object));
+  for (const SceneObject* object : left) gaps.push_back(ball_around(*object));
   const std::vector<LoosePoint> loose = loose_points(segments, cloud);
-  oneapi::tbb::parallel_for(std::size_t{0}, objects.size(), [&](std::size_t i) {
-    const bool near_change = std::any_of(stirred.begin(), stirred.end(), [&](const Sphere& ball) { return within(ball, balls[i], reach); });
-    if (!near_change && objects[i].grasps.grasps.empty()) return;
-    std::vector<Eigen::Vector3f> obstacles = obstacles_of(*views[i], segments, loose, balls[i], reach);
-    if (!near_change && clear_of_points(objects[i].grasps, obstacles, options.gripper, options.grasp)) return;  // a static scene costs next to nothing
+  oneapi::tbb::parallel_for(std::size_t{0}, subjects.size(), [&](std::size_t i) {
+    const GraspSubject& subject = subjects[i];
+    SceneObject& object = *subject.object;
+    const bool beside_gap = std::any_of(gaps.begin(), gaps.end(), [&](const Sphere& gap) { return within(gap, balls[i], reach); });
+    const bool kept = is_carried(subject) && !beside_gap && neighbours_stayed(i, subjects, balls, reach);
+    if (kept) object.grasps = moved(subject.before->grasps, object.model.T_camera_object * subject.before->model.T_camera_object.inverse());
+    if (kept && object.grasps.grasps.empty()) return;
+    std::vector<Eigen::Vector3f> obstacles = obstacles_of(*subject.view, segments, loose, balls[i], reach);
+    if (kept && clear_of_points(object.grasps, obstacles, options.gripper, options.grasp)) return;
     StageTimings timings;
-    GraspScene scene = surroundings(i, objects, balls, *views[i], reach);
+    GraspScene scene = surroundings(i, subjects, balls, reach);
     scene.obstacle_points_camera = std::move(obstacles);
-    objects[i].grasps = timings.measure("grasp", [&] { return plan_grasps(objects[i].model, scene, options.gripper, options.grasp); });
-    objects[i].ms["grasp"] = timings.ms().at("grasp");
+    object.grasps = timings.measure("grasp", [&] { return plan_grasps(object.model, scene, options.gripper, options.grasp); });
+    object.ms["grasp"] = timings.ms().at("grasp");
   });
 }
 

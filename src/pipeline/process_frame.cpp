@@ -41,6 +41,7 @@ const Track* find_track(const SceneMemory& memory, std::uint64_t id) {
 struct Work {
   const ObjectView* view = nullptr;
   const SceneObject* before = nullptr;  ///< As last published, where it is known.
+  const ObjectView* view_before = nullptr;
   std::vector<Candidate> candidates;
   StageTimings timings;
   SceneObject object;
@@ -54,6 +55,7 @@ std::vector<Work> plan_work(const std::vector<ObjectView>& views, const SceneMem
     const Track* track = find_track(memory, views[i].id);
     work[i].view = &views[i];
     work[i].before = track ? track->object.get() : nullptr;
+    work[i].view_before = track ? track->fitted_view.get() : nullptr;
   }
   return work;
 }
@@ -114,48 +116,64 @@ std::vector<Work> estimate_objects(const std::vector<ObjectView>& views, const S
   return work;
 }
 
-Scene empty_scene(const Frame& frame, const Segments& segments, const PipelineOptions& options) {
-  Scene scene;
+/// What every scene says of its frame, whatever was seen on it.
+Scene stamped(Scene scene, const Frame& frame, const PipelineOptions& options) {
   scene.sensor = frame.sensor;
   scene.sequence = frame.sequence;
   scene.stamps = frame.stamps;
   scene.camera = frame.camera;
   scene.T_world_sensor = frame.T_world_sensor;
+  scene.profile = options.profile;
+  return scene;
+}
+
+Scene empty_scene(const Segments& segments) {
+  Scene scene;
   if (!segments.planes.empty()) scene.support = segments.planes.front();
   scene.rejected = segments.rejected;
-  scene.profile = options.profile;
   return scene;
 }
 
 void add_objects(Scene& scene, std::vector<Work> work, const Segments& segments, const OrganizedCloud& cloud, const SceneMemory& memory,
                  const PipelineOptions& options) {
-  std::vector<const ObjectView*> views;
   std::vector<const SceneObject*> left;
   for (const std::uint64_t id : scene.lost)
     if (const Track* track = find_track(memory, id); track && track->object) left.push_back(track->object.get());
-  for (Work& w : work) {
-    views.push_back(w.view);
-    scene.objects.push_back(std::move(w.object));
-  }
-  plan_scene_grasps(scene.objects, views, segments, cloud, left, options);
+  std::vector<GraspSubject> subjects;
+  for (Work& w : work) subjects.push_back({&w.object, w.view, w.before, w.view_before});
+  plan_scene_grasps(subjects, segments, cloud, left, options);
+  for (Work& w : work) scene.objects.push_back(std::move(w.object));
+}
+
+/// A frame that shows the same as the last one looked at is the same scene; now and then one is looked at all the same.
+bool stands_still(const Frame& frame, const SceneMemory& memory, const PipelineOptions& options) {
+  return memory.look && memory.frames_since_look + 1 < options.memory.look_again_every && shows_the_same(frame, memory.look->frame);
+}
+
+PipelineResult look(const Frame& frame, const SceneMemory& memory, const PrimitiveLibrary& library, const PipelineOptions& options, StageTimings& timings) {
+  const auto cloud = timings.measure("cloud", [&] { return depth_to_cloud(frame.depth, frame.camera, options.cloud); });
+  const auto segments = timings.measure("segmentation", [&] { return segment(cloud, frame, memory, options); });
+  const auto normals = timings.measure("normals", [&] { return object_normals(cloud, segments, options.normals); });
+  const auto views = timings.measure("association", [&] { return associate(segments, cloud, normals, frame, memory, options.memory); });
+
+  Scene scene = stamped(empty_scene(segments), frame, options);
+  scene.lost = lost_ids(memory, views, frame.sensor);
+  auto work = estimate_objects(views, memory, library, options, scene.rejected, timings);
+  timings.measure("grasps", [&] { add_objects(scene, std::move(work), segments, cloud, memory, options); });
+  auto next = timings.measure("memory", [&] { return remember(scene, frame, views, memory, options.memory); });
+  return {std::move(scene), std::move(next)};
 }
 
 }  // namespace
 
 PipelineResult process_frame(const Frame& frame, const SceneMemory& memory, const PrimitiveLibrary& library, const PipelineOptions& options) {
   StageTimings timings;
-  const auto cloud = timings.measure("cloud", [&] { return depth_to_cloud(frame.depth, frame.camera, options.cloud); });
-  const auto segments = timings.measure("segmentation", [&] { return segment(cloud, frame, memory, options); });
-  const auto normals = timings.measure("normals", [&] { return object_normals(cloud, segments, options.normals); });
-  const auto views = timings.measure("association", [&] { return associate(segments, cloud, normals, frame, memory, options.memory); });
-
-  Scene scene = empty_scene(frame, segments, options);
-  scene.lost = lost_ids(memory, views, frame.sensor);
-  auto work = estimate_objects(views, memory, library, options, scene.rejected, timings);
-  timings.measure("grasps", [&] { add_objects(scene, std::move(work), segments, cloud, memory, options); });
-  auto next = timings.measure("memory", [&] { return remember(scene, views, memory, options.memory); });
-  scene.ms = timings.ms();
-  return {std::move(scene), std::move(next)};
+  const bool still = timings.measure("comparison", [&] { return stands_still(frame, memory, options); });
+  PipelineResult result = still ? PipelineResult{stamped(standing_scene(memory, frame.sensor), frame, options),
+                                                 remember_standing(memory, frame.sensor, options.memory)}
+                                : look(frame, memory, library, options, timings);
+  result.scene.ms = timings.ms();
+  return result;
 }
 
 }  // namespace gfp

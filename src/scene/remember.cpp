@@ -75,8 +75,27 @@ Track next_track(const ObjectView& view, const Scene& scene, const Track* before
   track.fit = warm_start_of(*object, track.fit);
   if (object->status != ObjectStatus::kUnchanged || !track.fitted_view) track.fitted_view = std::make_shared<const ObjectView>(view);
   track.object = std::make_shared<const SceneObject>(*object);
+  track.fit.model = std::shared_ptr<const FittedModel>(track.object, &track.object->model);
   return track;
 }
+
+/// Nothing where the frame is none: a depth image that does not fit its camera has no second look.
+std::shared_ptr<const Look> look_at(const Frame& frame, const Scene& scene) {
+  if (frame.depth.pixels.width != frame.camera.width || frame.depth.pixels.height != frame.camera.height || !validate(frame.camera)) return nullptr;
+  auto look = std::make_shared<Look>();
+  look->frame.sensor = frame.sensor;
+  look->frame.depth = frame.depth;
+  look->frame.camera = frame.camera;
+  look->frame.noise = frame.noise;
+  look->frame.T_world_sensor = frame.T_world_sensor;
+  look->frame.up_camera = frame.up_camera;
+  look->frame.mask = frame.mask;
+  look->support = scene.support;
+  look->rejected = scene.rejected;
+  return look;
+}
+
+bool stands_there(const Track& track, const std::string& sensor) { return track.sensor == sensor && track.missed_frames == 0 && track.object; }
 
 }  // namespace
 
@@ -87,11 +106,36 @@ std::vector<std::uint64_t> lost_ids(const SceneMemory& memory, const std::vector
   return lost;
 }
 
-SceneMemory remember(const Scene& scene, const std::vector<ObjectView>& views, const SceneMemory& memory, const AssociateOptions& options) {
+Scene standing_scene(const SceneMemory& memory, const std::string& sensor) {
+  Scene scene;
+  scene.support = memory.look->support;
+  scene.rejected = memory.look->rejected;
+  for (const Track& track : memory.tracks) {
+    if (!stands_there(track, sensor)) continue;
+    scene.objects.push_back(*track.object);
+    scene.objects.back().status = ObjectStatus::kUnchanged;
+    scene.objects.back().ms.clear();
+  }
+  return scene;
+}
+
+SceneMemory remember_standing(SceneMemory memory, const std::string& sensor, const AssociateOptions& options) {
+  ++memory.frames;
+  ++memory.frames_since_look;
+  for (Track& track : memory.tracks) {
+    if (stands_there(track, sensor)) ++track.fit.unchanged_frames;
+    if (track.sensor == sensor && track.missed_frames > 0) ++track.missed_frames;
+  }
+  std::erase_if(memory.tracks, [&](const Track& track) { return track.missed_frames > options.max_missed_frames; });
+  return memory;
+}
+
+SceneMemory remember(const Scene& scene, const Frame& frame, const std::vector<ObjectView>& views, const SceneMemory& memory, const AssociateOptions& options) {
   SceneMemory next;
   next.next_id = memory.next_id;
   next.frames = memory.frames + 1;
   next.last_support = scene.support ? scene.support : memory.last_support;
+  next.look = look_at(frame, scene);
   for (const ObjectView& view : views) {
     next.tracks.push_back(next_track(view, scene, find_track(memory, view.id)));
     next.next_id = std::max(next.next_id, view.id + 1);

@@ -48,6 +48,7 @@ void BM_WholeFrameWarm(benchmark::State& state) {
   const PrimitiveLibrary& library = builtin_library();
   PipelineOptions options;
   options.memory.unchanged_iou = 1.0;  // noise alone counts as a change
+  options.memory.look_again_every = 1;
   SceneMemory memory = process_frame(frames()[0], {}, library, options).memory;
   std::size_t next = 1, objects = 0;
   for (auto _ : state) {

@@ -53,7 +53,7 @@ Pictured boxes() {
     object.grasps.grasps = {grasp};
     p.scene.objects.push_back(object);
   }
-  p.memory = remember(p.scene, views, {});
+  p.memory = remember(p.scene, {}, views, {});
   return p;
 }
 

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "pipeline/stage_doubles.hpp"
+#include "support/box_model.hpp"
 
 namespace gfp {
 namespace {
@@ -19,7 +20,9 @@ class FitView : public ::testing::Test {
   }
   static ObjectView tracked_view(const std::string& class_name, const std::string& method, double cost, int fits) {
     ObjectView view = block_view();
-    view.warm_start = WarmStart{class_name, method, Transform::Identity(), Eigen::Vector3d::Ones(), {}, 0, 0, cost, fits};
+    view.warm_start = WarmStart{class_name, method, Transform::Identity(), Eigen::Vector3d::Ones(), {}, 0, 0, cost, fits, nullptr};
+    view.id = 0;  // whose turn it is depends on both
+    view.warm_start->model = std::make_shared<const FittedModel>(test::box_model(method, class_name, {0.1, 0.1, 0.1}, cost));
     return view;
   }
 
@@ -51,11 +54,46 @@ TEST_F(FitView, WithoutPrimitivesStillGivesAVolume) {
   EXPECT_EQ(candidates->front().model.method, "superquadric");
 }
 
+TEST_F(FitView, OnlyMovesAKnownObject) {
+  const auto candidates = fit_view(tracked_view("mug", "gfp_robust", 1.0, 3), library);
+  ASSERT_EQ(candidates->size(), 1U);
+  EXPECT_EQ(script().followed, 1);
+  EXPECT_EQ(script().registered + script().contoured + script().recognised + script().superquadrics, 0);
+}
+
+TEST_F(FitView, ShapesAKnownObjectAnewEveryNowAndThen) {
+  PipelineOptions options;
+  options.budget.reshape_every = 5;
+  for (int fits = 1; fits <= 20; ++fits) fit_view(tracked_view("mug", "gfp_robust", 1.0, fits), library, options);
+  EXPECT_EQ(script().contoured, 4);
+  EXPECT_EQ(script().followed, 16);
+  EXPECT_EQ(script().recognised, 0);
+}
+
+TEST_F(FitView, ShapesAKnownObjectAnewWhenItNoLongerFits) {
+  script().cost_of_class["mug"] = 1.2;  // more than shape_cost_slack, less than warm_cost_slack
+  EXPECT_EQ(fit_view(tracked_view("mug", "gfp_robust", 1.0, 3), library)->size(), 1U);
+  EXPECT_EQ(script().contoured, 1);
+  EXPECT_EQ(script().recognised, 0);
+}
+
+TEST_F(FitView, TakesTurns) {
+  PipelineOptions options;
+  options.budget.reshape_every = 6;
+  for (std::uint64_t id = 1; id <= 6; ++id) {
+    ObjectView view = tracked_view("mug", "gfp_robust", 1.0, 3);
+    view.id = id;
+    fit_view(view, library, options);
+  }
+  EXPECT_EQ(script().contoured, 1) << "of six objects that came together, one a frame";
+}
+
 TEST_F(FitView, FollowsAKnownObjectWithoutASearch) {
   script().cost_of_class["mug"] = 0.5;
-  const auto candidates = fit_view(tracked_view("mug", "gfp_robust", 0.5, 3), library);
+  const auto candidates = fit_view(tracked_view("mug", "gfp_robust", 0.5, 6), library);
   ASSERT_EQ(candidates->size(), 1U);
   EXPECT_EQ(candidates->front().model.class_name, "mug");
+  EXPECT_EQ(script().contoured, 1);
   EXPECT_EQ(script().recognised, 0);
   EXPECT_EQ(script().superquadrics, 0);
 }
@@ -74,12 +112,13 @@ TEST_F(FitView, SearchesAnewEveryNowAndThen) {
 }
 
 TEST_F(FitView, SearchesAnewWhenThePrimitiveIsGone) {
-  EXPECT_EQ(fit_view(tracked_view("kettle", "gfp_robust", 1.0, 3), library)->size(), 3U);
+  EXPECT_EQ(fit_view(tracked_view("kettle", "gfp_robust", 1.0, 6), library)->size(), 3U);
 }
 
 TEST_F(FitView, FollowsASuperquadricAsOne) {
-  const auto candidates = fit_view(tracked_view("unknown", "superquadric", 1.0, 3), library);
+  const auto candidates = fit_view(tracked_view("unknown", "superquadric", 1.0, 6), library);
   ASSERT_EQ(candidates->size(), 1U);
+  EXPECT_EQ(script().superquadrics, 1);
   EXPECT_EQ(candidates->front().model.method, "superquadric");
   EXPECT_EQ(script().registered, 0);
 }

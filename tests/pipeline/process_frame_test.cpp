@@ -51,8 +51,9 @@ TEST_F(ProcessFrame, RefitsOnlyWhatMoved) {
   const PipelineResult second = process_frame(block_frame(moved), first.memory, library);
   EXPECT_EQ(second.scene.objects[0].status, ObjectStatus::kUpdated);
   EXPECT_EQ(second.scene.objects[1].status, ObjectStatus::kUnchanged);
-  EXPECT_EQ(script().contoured, 1);
-  EXPECT_EQ(script().recognised, 0) << "it is followed, not searched";
+  EXPECT_EQ(script().followed, 1);
+  EXPECT_EQ(script().contoured + script().recognised, 0) << "it is followed, neither shaped anew nor searched";
+  EXPECT_EQ(script().planned, 0) << "its grasps moved with it";
   EXPECT_EQ(second.scene.objects[0].class_probabilities, first.scene.objects[0].class_probabilities) << "nothing new was learnt of the class";
 }
 

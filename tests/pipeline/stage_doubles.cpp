@@ -8,9 +8,11 @@
 #include "gfp/grasp/plan_grasps.hpp"
 #include "gfp/modelling/fit_simple_primitive.hpp"
 #include "gfp/modelling/fit_superquadric.hpp"
+#include "gfp/modelling/follow_model.hpp"
 #include "gfp/modelling/model_contour.hpp"
 #include "gfp/modelling/model_contour_paper.hpp"
 #include "gfp/recognition/recognise.hpp"
+#include "gfp/registration/follow_shape.hpp"
 #include "gfp/registration/register_paper.hpp"
 #include "gfp/registration/register_primitive.hpp"
 #include "gfp/registration/retrieve_instance.hpp"
@@ -23,7 +25,7 @@ namespace test {
 
 void StageScript::reset() {
   cost_of_class.clear();
-  for (auto* count : {&recognised, &registered, &contoured, &superquadrics, &planned}) *count = 0;
+  for (auto* count : {&recognised, &registered, &contoured, &followed, &superquadrics, &planned}) *count = 0;
 }
 
 StageScript& script() {
@@ -129,6 +131,21 @@ FittedModel model_contour(const ObjectView& view, const Placement& placement, co
   FittedModel model = test::box_model("gfp_robust", placement.primitive->class_name, {0.1, 0.1, 0.1}, placement.cost);
   model.primitive = placement.primitive;
   model.T_camera_object.translation() = view.camera.ray(view.tile.u0, view.tile.v0);
+  return model;
+}
+
+FollowedPose follow_shape(const ObjectView& view, const std::vector<Eigen::Vector3d>&, const std::shared_ptr<const Topology>&, const Transform&,
+                          const RegistrationOptions&) {
+  FollowedPose pose;
+  pose.T_camera_object.translation() = view.camera.ray(view.tile.u0, view.tile.v0);
+  return pose;
+}
+
+FittedModel follow_model(const ObjectView&, const FittedModel& before, const FollowedPose& pose) {
+  ++test::script().followed;
+  FittedModel model = before;
+  model.T_camera_object = pose.T_camera_object;
+  model.evidence.cost = test::cost_of(model.class_name);
   return model;
 }
 

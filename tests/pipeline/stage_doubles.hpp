@@ -15,7 +15,7 @@ namespace gfp::test {
 /// What the doubles do and have done since reset().
 struct StageScript {
   std::map<std::string, double> cost_of_class;     ///< Registration and contour cost; 1 where not named.
-  std::atomic<int> recognised{0}, registered{0}, contoured{0}, superquadrics{0}, planned{0};
+  std::atomic<int> recognised{0}, registered{0}, contoured{0}, followed{0}, superquadrics{0}, planned{0};
   void reset();
 };
 StageScript& script();

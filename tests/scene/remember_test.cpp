@@ -33,7 +33,7 @@ Seen see(const std::vector<test::Block>& blocks, const SceneMemory& memory, std:
 
 TEST(Remember, KeepsPlaceFitAndPlane) {
   const Seen seen = see(kTwo, {});
-  const SceneMemory memory = remember(seen.scene, seen.views, {});
+  const SceneMemory memory = remember(seen.scene, {}, seen.views, {});
   ASSERT_EQ(memory.tracks.size(), 2U);
   EXPECT_EQ(memory.frames, 1U);
   EXPECT_EQ(memory.next_id, 3U);
@@ -49,12 +49,12 @@ TEST(Remember, KeepsPlaceFitAndPlane) {
 
 TEST(Remember, AnUnchangedObjectKeepsTheViewItWasFittedTo) {
   const Seen first = see(kTwo, {}, 1);
-  SceneMemory memory = remember(first.scene, first.views, {});
+  SceneMemory memory = remember(first.scene, {}, first.views, {});
   const auto fitted = memory.tracks[0].fitted_view;
   for (std::uint64_t seed = 2; seed <= 5; ++seed) {
     const Seen again = see(kTwo, memory, seed);
     ASSERT_TRUE(again.views[0].unchanged) << "seed " << seed;
-    memory = remember(again.scene, again.views, memory);
+    memory = remember(again.scene, {}, again.views, memory);
   }
   EXPECT_EQ(memory.tracks[0].fitted_view, fitted);
   EXPECT_EQ(memory.tracks[0].fit.unchanged_frames, 4);
@@ -64,14 +64,14 @@ TEST(Remember, AnUnchangedObjectKeepsTheViewItWasFittedTo) {
 // 0.3 mm a frame is far below the noise, but after some frames the fit no longer holds.
 TEST(Remember, ASlowDriftIsNoticed) {
   const Seen first = see(kTwo, {}, 1);
-  SceneMemory memory = remember(first.scene, first.views, {});
+  SceneMemory memory = remember(first.scene, {}, first.views, {});
   int frame = 1;
   for (; frame <= 10; ++frame) {
     auto moved = kTwo;
     moved[0].depth_m += 0.0003 * frame;
     const Seen seen = see(moved, memory, 1 + static_cast<std::uint64_t>(frame));
     if (!seen.views[0].unchanged) break;
-    memory = remember(seen.scene, seen.views, memory);
+    memory = remember(seen.scene, {}, seen.views, memory);
   }
   EXPECT_GT(frame, 1);
   EXPECT_LE(frame, 5);  // 0.5 sigma of 1.5 mm
@@ -79,35 +79,35 @@ TEST(Remember, ASlowDriftIsNoticed) {
 
 TEST(Remember, WhatIsGoneIsLostOnceAndKeepsItsIdForAWhile) {
   const Seen both = see(kTwo, {});
-  SceneMemory memory = remember(both.scene, both.views, {});
+  SceneMemory memory = remember(both.scene, {}, both.views, {});
   AssociateOptions options;
   options.max_missed_frames = 3;
   for (int frame = 1; frame <= 3; ++frame) {
     const Seen one = see({kTwo[0]}, memory);
     EXPECT_EQ(lost_ids(memory, one.views, "blocks"), frame == 1 ? std::vector<std::uint64_t>{2} : std::vector<std::uint64_t>{});
-    memory = remember(one.scene, one.views, memory, options);
+    memory = remember(one.scene, {}, one.views, memory, options);
     EXPECT_EQ(memory.tracks.size(), 2U);
   }
   EXPECT_EQ(see(kTwo, memory).views[1].id, 2U) << "back in time";
   const Seen one = see({kTwo[0]}, memory);
-  memory = remember(one.scene, one.views, memory, options);
+  memory = remember(one.scene, {}, one.views, memory, options);
   EXPECT_EQ(memory.tracks.size(), 1U) << "forgotten";
   EXPECT_EQ(see(kTwo, memory).views[1].id, 3U);
 }
 
 TEST(Remember, AnotherSensorsSilenceSaysNothing) {
   const Seen both = see(kTwo, {});
-  const SceneMemory memory = remember(both.scene, both.views, {});
+  const SceneMemory memory = remember(both.scene, {}, both.views, {});
   Scene elsewhere;
   elsewhere.sensor = "other";
   EXPECT_TRUE(lost_ids(memory, {}, "other").empty());
-  EXPECT_EQ(remember(elsewhere, {}, memory).tracks[0].missed_frames, 0);
+  EXPECT_EQ(remember(elsewhere, {}, {}, memory).tracks[0].missed_frames, 0);
 }
 
 TEST(Remember, WhatHadNoFitIsSeenButNotWarm) {
   Seen seen = see(kTwo, {});
   seen.scene.objects.erase(seen.scene.objects.begin());
-  const SceneMemory memory = remember(seen.scene, seen.views, {});
+  const SceneMemory memory = remember(seen.scene, {}, seen.views, {});
   ASSERT_EQ(memory.tracks.size(), 2U);
   EXPECT_FALSE(memory.tracks[0].object);
   const Seen again = see(kTwo, memory);

@@ -45,8 +45,8 @@ void visit_fields(Gripper& o, Visitor&& field) {
 }
 
 struct GraspContact {
-  Eigen::Vector3d point;    ///< Camera frame, metres.
-  Eigen::Vector3d normal;   ///< Inward (into the object), unit, camera frame.
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();   ///< Camera frame, metres.
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< Inward (into the object), unit, camera frame.
   bool observed = false;
 };
 
@@ -87,5 +87,8 @@ struct GraspPlan {
   std::string no_grasp_reason;
   int poses_examined = 0;     ///< Jaw poses looked at, all on antipodal contacts inside the stroke.
 };
+
+/// The plan of an object that moved, and everything around it with it. `T_now_before`: camera frame.
+GraspPlan moved(GraspPlan plan, const Transform& T_now_before);
 
 }  // namespace gfp

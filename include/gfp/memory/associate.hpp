@@ -26,4 +26,9 @@ std::vector<ObjectView> associate(const Segments& segments, const OrganizedCloud
 /// Whether two views of one object show the same surface in the same place, to within the sensor's noise.
 bool same_within_noise(const ObjectView& now, const ObjectView& before, const AssociateOptions& options = {});
 
+/// Whether two frames show one scene from one standpoint with nothing moved, to within the sensor's noise: in patches of 32 x 32
+/// pixels the mean depth stayed within a standard deviation of one reading, and in blocks of 16 x 16 no edge moved by two pixels and
+/// less than half of the readings came or went. What moves by less adds up until it is seen. Cost: 0.2 ms at 640 x 480.
+bool shows_the_same(const Frame& now, const Frame& before);
+
 }  // namespace gfp

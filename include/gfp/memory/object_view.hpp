@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -23,6 +24,8 @@ enum class Evidence : std::uint8_t {
   kOther,      ///< Another object: whether it hides ours depends on its depth.
 };
 
+struct FittedModel;  // of the step `modelling`: carried to the next frame, never looked into by `memory`
+
 /// What the last frame knew of this object; lets the fit skip its search.
 struct WarmStart {
   std::string primitive;                ///< Its name; empty for methods without one.
@@ -34,6 +37,7 @@ struct WarmStart {
   int unchanged_frames = 0;
   double cost = std::numeric_limits<double>::infinity();  ///< FitEvidence::cost of that fit: a warm fit that got worse is searched anew.
   int fits = 0;                         ///< So far; every now and then one of them searches anew.
+  std::shared_ptr<const FittedModel> model;  ///< That fit itself; its pose is in the camera frame of its own frame.
 };
 
 /// All that one object's fit may look at: a copy of its part of the frame, cut out with a margin.

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "gfp/frame/frame.hpp"
 #include "gfp/memory/object_view.hpp"
 #include "gfp/segmentation/segments.hpp"
 
@@ -30,12 +31,21 @@ struct Track {
   std::shared_ptr<const SceneObject> object;
 };
 
+/// The last frame that went through every stage, as far as the next one is compared with it.
+struct Look {
+  Frame frame;                                              ///< Without colour.
+  std::optional<SupportPlane> support;
+  std::vector<RejectedSegment> rejected;
+};
+
 /// All the state of the pipeline; a value. Frame N's memory and frame N + 1 give frame N + 1's memory.
 struct SceneMemory {
   std::uint64_t next_id = 1;
   std::uint64_t frames = 0;
   std::vector<Track> tracks;                                ///< By id, ascending.
   std::optional<SupportPlane> last_support;
+  std::shared_ptr<const Look> look;
+  int frames_since_look = 0;                                ///< That showed the same as `look`.
 };
 
 }  // namespace gfp

@@ -14,8 +14,9 @@ namespace gfp {
 /// All that options.method has to say about one object: every fit that `selection` should choose from, never empty.
 ///
 /// gfp_robust: recognise -> register every hypothesis -> contour of the best few placements (by registration cost), and a
-/// superquadric, which always competes. A view with a warm start tries that class (or the superquadric) alone, until
-/// its cost grows or budget.search_every fits are over. superquadric: that alone.
+/// superquadric where that may win. A view with a warm start keeps its shape and is only moved; every budget.reshape_every fits, or when
+/// the shape no longer fits, that class alone (or the superquadric) is fitted; every budget.search_every fits, or when that no longer
+/// fits either, all classes are. superquadric: that alone.
 /// Pure and single-threaded; `timings` takes the milliseconds of each stage where it is given.
 /// Errors: kNotFound for an unknown method, naming the known ones.
 Result<std::vector<Candidate>> fit_view(const ObjectView& view, const PrimitiveLibrary& library, const PipelineOptions& options = {},

@@ -20,14 +20,18 @@ namespace gfp {
 struct FitBudgetOptions {
   int max_contours = 2;           ///< Placements, over all hypotheses, that get a contour: those of least cost.
   int search_every = 30;          ///< Every so many fits of a tracked object all classes are searched again; 1: always.
+  int reshape_every = 6;          ///< Every so many fits its shape is fitted again; between them only its pose is; 1: always.
   double warm_cost_slack = 0.25;  ///< A tracked fit whose cost grew by more than this is searched again at once.
+  double shape_cost_slack = 0.1;  ///< A shape that, at its new pose, costs this much more than when it was fitted is fitted again at once.
 };
 
 template <class Visitor>
 void visit_fields(FitBudgetOptions& o, Visitor&& field) {
   field("max_contours", o.max_contours, 1, 64);
   field("search_every", o.search_every, 1, 100'000);
+  field("reshape_every", o.reshape_every, 1, 100'000);
   field("warm_cost_slack", o.warm_cost_slack, 0.0, 100.0);
+  field("shape_cost_slack", o.shape_cost_slack, 0.0, 100.0);
 }
 
 /// Every stage's options: the configuration's `pipeline` section.

@@ -20,9 +20,16 @@ SceneObject describe(ObjectEstimate estimate, const ObjectView& view, ObjectStat
 /// again, under its old id.
 std::vector<std::uint64_t> lost_ids(const SceneMemory& memory, const std::vector<ObjectView>& views, const std::string& sensor);
 
-/// The memory after a frame: `memory` with every object of `scene` and every view, whether it was fitted or not.
+/// The scene of a frame that shows the same as memory.look (`shows_the_same`), without its stamps: every object that `sensor` saw
+/// then, kUnchanged.
+Scene standing_scene(const SceneMemory& memory, const std::string& sensor);
+
+/// The memory after such a frame.
+SceneMemory remember_standing(SceneMemory memory, const std::string& sensor, const AssociateOptions& options = {});
+
+/// The memory after a frame that was looked at: `memory` with every object of `scene` and every view, whether it was fitted or not.
 /// A track out of sight is kept for options.max_missed_frames frames of its sensor.
-SceneMemory remember(const Scene& scene, const std::vector<ObjectView>& views, const SceneMemory& memory,
+SceneMemory remember(const Scene& scene, const Frame& frame, const std::vector<ObjectView>& views, const SceneMemory& memory,
                      const AssociateOptions& options = {});
 
 }  // namespace gfp

@@ -1,0 +1,12 @@
+#pragma once
+
+#include "gfp/modelling/fitted_model.hpp"
+#include "gfp/registration/follow_shape.hpp"
+
+namespace gfp {
+
+/// The same body at another pose, judged anew by what is seen now. Vertices that were seen before stay marked as seen, those that are
+/// seen for the first time are marked too; their sigma stays what it was, for the shape did not learn from them.
+FittedModel follow_model(const ObjectView& view, const FittedModel& before, const FollowedPose& pose);
+
+}  // namespace gfp
