@@ -1,7 +1,8 @@
 #pragma once
 
+#include "gfp/memory/object_view.hpp"
 #include "gfp/modelling/fitted_model.hpp"
-#include "gfp/registration/follow_shape.hpp"
+#include "gfp/registration/placement.hpp"
 
 namespace gfp {
 

@@ -10,12 +10,6 @@
 
 namespace gfp {
 
-/// Where a body of known shape is now.
-struct FollowedPose {
-  Transform T_camera_object = Transform::Identity();
-  Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();  ///< x y z rx ry rz, support-frame tangent.
-};
-
 /// Moves a rigid closed surface (`vertices`, object frame, metres) from `T_camera_object` onto what is seen now: the residuals of
 /// register_primitive, six unknowns. No search: the guess must be within a few centimetres and degrees. Whether the shape still is
 /// the right one is for the caller to judge. Cost: 0.5 ms.

@@ -23,4 +23,10 @@ struct Placement {
   double yaw_low_rad = 0, yaw_high_rad = 0;      ///< Yaw interval relative to T_camera_object that explains the view as well; [-pi, pi] where yaw means nothing.
 };
 
+/// Where a body of known shape is now.
+struct FollowedPose {
+  Transform T_camera_object = Transform::Identity();
+  Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();  ///< x y z rx ry rz, support-frame tangent.
+};
+
 }  // namespace gfp
