@@ -14,6 +14,7 @@
 #include "publish/publish_options.hpp"
 #include "replay/replay_options.hpp"
 #include "synthetic/synthetic_options.hpp"
+#include "view/view_options.hpp"
 
 namespace gfp {
 
@@ -76,6 +77,7 @@ struct DaemonOptions {
   std::string gripper_file; ///< As in config/grippers, relative to the configuration; under what pipeline.gripper says.
   std::vector<SensorConfig> sensors;
   PublishOptions publish;
+  ViewOptions view;
   RobotOptions robot;
   LogOptions log;
   PipelineOptions pipeline;
@@ -88,6 +90,7 @@ void visit_fields(DaemonOptions& o, Visitor&& field) {
   field("gripper_file", o.gripper_file);
   field.list("sensors", o.sensors);
   field.section("publish", o.publish);
+  field.section("view", o.view);
   field.section("robot", o.robot);
   field.section("log", o.log);
   field.section("pipeline", o.pipeline);

@@ -12,6 +12,8 @@
 #include "daemon/logging.hpp"
 #include "daemon/service_manager.hpp"
 #include "gfp/core/version.hpp"
+#include "view/access.hpp"
+#include "view/view.hpp"
 #include <spdlog/spdlog.h>
 
 namespace {
@@ -28,6 +30,7 @@ gfp::Result<gfp::DaemonOptions> load(const Arguments& arguments) {
   auto options = gfp::config::load_daemon_options(arguments.config, settings);
   if (!options) return options;
   if (gfp::Result<void> valid = gfp::validate(options->pipeline); !valid) return tl::unexpected(valid.error());
+  if (gfp::Result<void> valid = gfp::view::validate(options->view); !valid) return tl::unexpected(valid.error());
   return options;
 }
 
@@ -71,6 +74,15 @@ void serve(gfp::Daemon& daemon, const Arguments& arguments, const sigset_t& sign
   }
 }
 
+/// Robots live without a view: where it cannot be served, that is said and the daemon goes on.
+std::unique_ptr<gfp::View> start_view(const gfp::DaemonOptions& options, std::uint64_t session, gfp::Publisher& publisher) {
+  auto view = gfp::View::start(options.view, session);
+  if (!view) return spdlog::warn("no view: {}", view.error().what), nullptr;
+  publisher.mirror(&(*view)->inbox());
+  spdlog::info("the view is at http://{}:{}/", options.view.address, (*view)->port());
+  return std::move(*view);
+}
+
 int run(const Arguments& arguments) {
   const auto options = load(arguments);
   if (!options) {
@@ -88,12 +100,15 @@ int run(const Arguments& arguments) {
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);
 
   gfp::builtin_library();  // made before the first frame, not during it
-  auto daemon = gfp::Daemon::start(*options, parts(), new_session());
+  const std::uint64_t session = new_session();
+  std::unique_ptr<gfp::View> view;  // it outlives the daemon, whose threads put into it
+  auto daemon = gfp::Daemon::start(*options, parts(), session);
   if (!daemon) {
     spdlog::error("{}", daemon.error().what);
     return daemon.error().code == gfp::ErrorCode::kInvalidArgument ? gfp::kExitConfig : gfp::kExitUnavailable;
   }
   gfp::publish_log_to(&(*daemon)->publisher());
+  if (options->view.enabled) view = start_view(*options, session, (*daemon)->publisher());
   spdlog::info("gfpd {} serves {} sensor(s)", gfp::version(), options->sensors.size());
   gfp::tell_service_manager("READY=1");
   serve(**daemon, arguments, signals);

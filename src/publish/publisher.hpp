@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -36,10 +37,14 @@ class Publisher {
   static Result<std::unique_ptr<Publisher>> start(const PublishOptions& options, std::uint64_t session, ControlHandler control = {});
   ~Publisher();  ///< As stop().
 
-  void put(FramePtr frame) { inbox_.put(std::move(frame)); }
-  void put(ScenePtr scene) { inbox_.put(std::move(scene)); }
-  void put(v1::SensorStatus status) { inbox_.put(std::move(status)); }
-  void put(v1::LogRecord record) { inbox_.put(std::move(record)); }
+  void put(FramePtr frame) { put_twice(std::move(frame)); }
+  void put(ScenePtr scene) { put_twice(std::move(scene)); }
+  void put(v1::SensorStatus status) { put_twice(std::move(status)); }
+  void put(v1::LogRecord record) { put_twice(std::move(record)); }
+
+  /// From now on what is put here goes to `other` too: the view's, say. It must outlive all calls of put().
+  void mirror(Inbox* other) { mirror_ = other; }
+
   void put(PeerReply reply) { inbox_.put(std::move(reply)); }
 
   /// Sends what waits and the daemon's last status, then closes the sockets (up to half a second for slow subscribers).
@@ -71,6 +76,12 @@ class Publisher {
   void send_reply(PeerReply reply);
   v1::ControlReply snapshot(const v1::ControlRequest& request) const;
 
+  template <class T>
+  void put_twice(T value) {
+    if (Inbox* other = mirror_) other->put(value);
+    inbox_.put(std::move(value));
+  }
+
   struct KnownTopology {
     std::shared_ptr<const Topology> topology;
     std::size_t vertices = 0;
@@ -90,6 +101,7 @@ class Publisher {
   const ControlHandler handler_;
   std::unique_ptr<zmq::context_t> context_;
   Inbox inbox_;
+  std::atomic<Inbox*> mirror_ = nullptr;
   // From here on: the publisher thread's own.
   Outlet sensor_, state_;
   ControlSocket control_;

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "gfp/core/error.hpp"
+
+namespace gfp::view {
+
+/// The Foxglove WebSocket protocol, version 1, as far as a publisher needs it: JSON texts of both directions and the header of binary
+/// messages. Pure functions; the sockets are elsewhere.
+
+inline constexpr std::string_view kSubprotocols[] = {"foxglove.sdk.v1", "foxglove.websocket.v1"};  ///< The newer first.
+
+/// The first of ours that the client offers in Sec-WebSocket-Protocol (comma-separated); empty: none.
+std::string_view choose_subprotocol(std::string_view offered);
+
+/// One topic as clients see it. Ids are unique while the daemon runs.
+struct Channel {
+  std::uint32_t id = 0;
+  std::string topic;
+  std::string schema_name;  ///< Fully qualified, as in `foxglove.PointCloud`.
+  std::string schema;       ///< FileDescriptorSet that defines it.
+};
+
+std::string server_info(std::string_view name, std::uint64_t session);
+std::string advertise(std::span<const Channel> channels);
+
+enum class StatusLevel { kInfo = 0, kWarning = 1, kError = 2 };
+std::string status(StatusLevel level, std::string_view message);
+
+/// What a client may say. A subscription id is the client's own; messages carry it back.
+struct Subscribe {
+  struct Item {
+    std::uint32_t subscription = 0, channel = 0;
+  };
+  std::vector<Item> items;
+};
+struct Unsubscribe {
+  std::vector<std::uint32_t> subscriptions;
+};
+struct Other {
+  std::string op;  ///< Well-formed, but nothing that we offer.
+};
+using ClientMessage = std::variant<Subscribe, Unsubscribe, Other>;
+
+inline constexpr std::size_t kMaxClientMessageBytes = 64 * 1024;
+inline constexpr std::size_t kMaxItems = 1000;  ///< Subscriptions in one message.
+
+/// Errors: kTooLarge, kCorruptData (not JSON, no `op`, a field of another kind).
+Result<ClientMessage> parse_client_message(std::string_view text);
+
+/// opcode 1, subscription id, log time: what stands before the payload of a message (13 bytes, little-endian).
+std::string message_header(std::uint32_t subscription, std::uint64_t log_time_ns);
+
+}  // namespace gfp::view

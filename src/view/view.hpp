@@ -1,0 +1,35 @@
+#pragma once
+
+#include <memory>
+
+#include "gfp/core/error.hpp"
+#include "publish/inbox.hpp"
+#include "view/view_options.hpp"
+
+namespace gfp {
+
+/// What a person sees of the daemon: the Foxglove WebSocket protocol and a built-in page, on one port and one thread of its own.
+///
+///     Publisher --mirror()--> Inbox (latest value a kind) --view thread--> Hub --> each client's queue --> WebSocket
+///
+/// Encodes only what some client has subscribed to.
+class View {
+ public:
+  /// Errors: kInvalidArgument (options), kIo (the port is taken, no such address).
+  static Result<std::unique_ptr<View>> start(const ViewOptions& options, std::uint64_t session);
+  ~View();  ///< Closes all connections.
+
+  Inbox& inbox() { return inbox_; }  ///< Where values are put.
+
+  /// The port it listens on.
+  int port() const;
+
+ private:
+  class Server;
+  View();
+
+  Inbox inbox_;
+  std::unique_ptr<Server> server_;
+};
+
+}  // namespace gfp

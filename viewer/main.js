@@ -1,0 +1,159 @@
+// The page: newest message of each topic in, picture and figures out.
+import { Connection } from "./connection.js";
+import { element, showConnection, showDetails, showLegend, showObjects, showSensors, showStages } from "./panel.js";
+import { World } from "./world.js";
+
+const $ = (id) => document.getElementById(id);
+const state = { selected: null, scene: null, sensor: null, topologies: new Map(), statuses: new Map(), isPaused: false, pointMode: "colour" };
+const world = new World($("canvas"), $("labels"), select);
+
+const STREAM = /^\/gfp\/sensor\/([^/]+)\/(depth|color|camera)\/$/;
+
+/** What is worth its bandwidth: images only where the points are drawn, and of one sensor. */
+function wanted(topic) {
+  if (["/gfp/scene/", "/gfp/mesh/", "/gfp/status/"].includes(topic)) return true;
+  const stream = STREAM.exec(topic);
+  if (!stream) return false;
+  state.sensor ??= stream[1];
+  if (stream[1] !== state.sensor) return false;
+  if (stream[2] === "camera") return true;
+  return world.options.points && !document.hidden && !(stream[2] === "color" && state.pointMode === "distance");
+}
+
+function onMessage(topic, read, logTime_ms) {
+  const stream = STREAM.exec(topic);
+  if (topic === "/gfp/mesh/") {
+    const topology = read();
+    if (!state.topologies.has(topology.hash)) state.topologies.set(topology.hash, topology);
+  } else if (topic === "/gfp/status/") {
+    const status = read();
+    state.statuses.set(status.sensor, status);
+    showSensors(state.statuses);
+  } else if (state.isPaused || document.hidden) {
+    return;
+  } else if (topic === "/gfp/scene/") {
+    const scene = read();
+    if (state.sensor === null || scene.header.sensor === state.sensor) takeScene(scene, Date.now() - logTime_ms);
+  } else if (stream[2] === "camera") {
+    world.cloud.setCalibration(read());
+  } else {
+    if (stream[2] === "depth") world.cloud.setDepth(read());
+    else world.cloud.setColor(read());
+    world.showChoice();
+  }
+}
+
+function takeScene(scene, age_ms) {
+  state.scene = scene;
+  if (state.selected !== null && !scene.objects.some(({ id }) => id === state.selected)) state.selected = null;
+  world.setScene(scene, state.topologies, state.selected);
+  showStages(scene, age_ms);
+  showChoice();
+}
+
+function showChoice() {
+  if (!state.scene) return;
+  showObjects(state.scene, state.selected, select);
+  showDetails(state.scene.objects.find(({ id }) => id === state.selected), world.meshes.get(state.selected)?.decoded);
+}
+
+function select(id) {
+  state.selected = id;
+  world.select(id);
+  showChoice();
+}
+
+function selectNext(step) {
+  const ids = state.scene?.objects.map(({ id }) => id) ?? [];
+  if (!ids.length) return;
+  const at = ids.indexOf(state.selected);
+  select(ids[at < 0 ? (step > 0 ? 0 : ids.length - 1) : (at + step + ids.length) % ids.length]);
+}
+
+function pause() {
+  state.isPaused = !state.isPaused;
+  $("pause").setAttribute("aria-pressed", state.isPaused);
+  $("pause").textContent = state.isPaused ? "Resume" : "Pause";
+  showConnection(state.isPaused ? "paused" : connection.socket.readyState === WebSocket.OPEN ? "live" : "lost");
+}
+
+/** Buttons of which one is on. */
+function radioGroup(parent, title, choices, initial, onChoose) {
+  const buttons = choices.map(([value, text]) => {
+    const button = element("button", { text, type: "button" });
+    button.setAttribute("role", "radio");
+    button.addEventListener("click", () => choose(value));
+    return [value, button];
+  });
+  function choose(value) {
+    for (const [mine, button] of buttons) button.setAttribute("aria-checked", mine === value);
+    onChoose(value);
+  }
+  parent.append(element("span", { text: title }), ...buttons.map(([, button]) => button));
+  choose(initial);
+  return choose;
+}
+
+const chooseMesh = radioGroup($("mesh-mode"), "Meshes", [["seen", "Seen"], ["sigma", "Sigma"], ["object", "Object"]], "seen", (mode) => {
+  world.setMeshMode(mode);
+  showLegend(mode);
+});
+const choosePoints = radioGroup($("cloud-mode"), "Points", [["colour", "Colour"], ["distance", "Distance"], ["objects", "Objects"]], "colour", (mode) => {
+  state.pointMode = mode;
+  world.cloud.setMode(mode);
+  connection?.review();
+  world.draw();
+});
+
+var connection = null; // the choices above ask for it before it is made
+
+const toggles = new Map();
+for (const [option, text] of [["points", "Points"], ["meshes", "Meshes"], ["grasps", "Grasps"], ["table", "Table"], ["names", "Names"]]) {
+  const button = element("button", { text, type: "button" });
+  const toggle = () => {
+    world.options[option] = !world.options[option];
+    button.setAttribute("aria-pressed", world.options[option]);
+    connection.review();
+    world.showChoice();
+  };
+  button.setAttribute("aria-pressed", true);
+  button.addEventListener("click", toggle);
+  toggles.set(option, toggle);
+  $("toggles").append(button);
+}
+
+const KEYS = [
+  ["↑ ↓", "Next or previous object", ["ArrowUp", "ArrowDown"], (key) => selectNext(key === "ArrowDown" ? 1 : -1)],
+  ["Esc", "No object", ["Escape"], () => select(null)],
+  ["← →", "Turn", ["ArrowLeft", "ArrowRight"], (key) => world.orbit(key === "ArrowLeft" ? -0.15 : 0.15, 0, 1)],
+  ["PgUp PgDn", "Look from higher or lower", ["PageUp", "PageDown"], (key) => world.orbit(0, key === "PageUp" ? 0.12 : -0.12, 1)],
+  ["+ −", "Nearer or farther", ["+", "=", "-"], (key) => world.orbit(0, 0, key === "-" ? 1.15 : 1 / 1.15)],
+  ["Home", "Look from the sensor", ["Home"], () => world.aim()],
+  ["1 2 3", "Meshes: seen, sigma, object", ["1", "2", "3"], (key) => chooseMesh(["seen", "sigma", "object"][key - 1])],
+  ["4 5 6", "Points: colour, distance, objects", ["4", "5", "6"], (key) => choosePoints(["colour", "distance", "objects"][key - 4])],
+  ["P M G T N", "Points, meshes, grasps, table, names on or off", ["p", "m", "g", "t", "n"], (key) => toggles.get({ p: "points", m: "meshes", g: "grasps", t: "table", n: "names" }[key])()],
+  ["Space", "Pause", [" "], pause],
+  ["?", "This list", ["?"], () => $("help").showModal()],
+];
+for (const [keys, text] of KEYS) $("keys").append(element("dt", {}, ...keys.split(" ").map((key) => element("kbd", { text: key }))), element("dd", { text }));
+document.addEventListener("keydown", (event) => {
+  if (event.ctrlKey || event.metaKey || event.altKey || $("help").open) return;
+  if (event.key === " " && event.target instanceof HTMLButtonElement) return; // it presses the button
+  const found = KEYS.find(([, , keys]) => keys.includes(event.key));
+  if (!found) return;
+  event.preventDefault();
+  found[3](event.key);
+});
+$("pause").addEventListener("click", pause);
+$("help-button").addEventListener("click", () => $("help").showModal());
+
+connection = new Connection(`${location.protocol === "https:" ? "wss" : "ws"}://${location.host}/${location.search}`, {
+  wanted,
+  onMessage,
+  onState: (now) => {
+    if (now === "restarted") state.topologies.clear(), state.statuses.clear();
+    if (!state.isPaused) showConnection(now);
+  },
+});
+document.addEventListener("visibilitychange", () => connection.review());
+window.gfp = { state, world }; // for whoever looks from the browser's console, and for the tests

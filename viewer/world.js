@@ -1,0 +1,212 @@
+// The three-dimensional scene: draws when something changed, and only then.
+import * as THREE from "three";
+import { OrbitControls } from "three/addons/controls/OrbitControls.js";
+import { Cloud } from "./cloud.js";
+import { colorOfId } from "./colors.js";
+import { ObjectMesh, gripper, matrixOf, supportSurface } from "./objects.js";
+
+const MAX_SHOWN_GRASPS = 5;
+const UP = new THREE.Vector3(0, 0, 1);
+
+export class World {
+  constructor(canvas, labels, onPick) {
+    this.canvas = canvas;
+    this.labels = labels;
+    this.options = { mesh: "seen", points: true, meshes: true, grasps: true, table: true, names: true };
+    this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true, powerPreference: "low-power" });
+    this.renderer.setPixelRatio(Math.min(2, devicePixelRatio));
+    this.scene = new THREE.Scene();
+    this.scene.background = new THREE.Color(0x11151a);
+    this.camera = new THREE.PerspectiveCamera(50, 1, 0.02, 30);
+    this.camera.up.copy(UP);
+    this.scene.add(new THREE.HemisphereLight(0xdfe9ff, 0x39404a, 1.6), this.camera);
+    const lamp = new THREE.DirectionalLight(0xffffff, 1.9);
+    lamp.position.set(0.5, 0.8, 1);
+    this.camera.add(lamp);
+    this.sensor = new THREE.Group(); // the sensor's optical frame in a world whose z is up
+    this.sensor.matrixAutoUpdate = false;
+    this.scene.add(this.sensor);
+    this.cloud = new Cloud();
+    this.grasps = new THREE.Group();
+    this.table = new THREE.Group();
+    this.meshes = new Map();
+    this.sensor.add(this.cloud.points, this.grasps, this.table);
+    this.controls = new OrbitControls(this.camera, canvas);
+    this.controls.addEventListener("change", () => this.draw());
+    this.level = new THREE.Quaternion(); // turns what the scene calls world so that the table is level
+    this.listen(onPick);
+    new ResizeObserver(() => this.resize()).observe(canvas);
+  }
+
+  listen(onPick) {
+    let down = null;
+    this.canvas.addEventListener("pointerdown", (event) => (down = [event.clientX, event.clientY]));
+    this.canvas.addEventListener("pointerup", (event) => {
+      if (!down || Math.hypot(event.clientX - down[0], event.clientY - down[1]) > 5) return;
+      const box = this.canvas.getBoundingClientRect();
+      const at = new THREE.Vector2((2 * (event.clientX - box.left)) / box.width - 1, 1 - (2 * (event.clientY - box.top)) / box.height);
+      const ray = new THREE.Raycaster();
+      ray.setFromCamera(at, this.camera);
+      const hit = ray.intersectObjects([...this.meshes.values()].map(({ mesh }) => mesh), false)[0];
+      onPick(hit ? hit.object.userData.id : null);
+    });
+  }
+
+  resize() {
+    const { clientWidth: width, clientHeight: height } = this.canvas;
+    if (!width || !height) return;
+    this.renderer.setSize(width, height, false);
+    this.camera.aspect = width / height;
+    this.camera.updateProjectionMatrix();
+    this.draw();
+  }
+
+  /** Asks for a picture; several askings before it make one. The page keeps breathing between pictures, however slow they are. */
+  draw() {
+    if (this.isDue) return;
+    this.isDue = true;
+    setTimeout(() => requestAnimationFrame(() => this.render()), this.pause_ms ?? 0);
+  }
+
+  render() {
+    this.isDue = false;
+    const start = performance.now();
+    this.renderer.render(this.scene, this.camera);
+    this.placeLabels();
+    this.pause_ms = Math.min(200, 0.5 * (performance.now() - start));
+    this.pictures = (this.pictures ?? 0) + 1;
+  }
+
+  setScene(scene, topologies, selected) {
+    this.last = { scene, topologies, selected };
+    this.placeSensor(scene);
+    const present = new Set();
+    for (const object of scene.objects) {
+      present.add(object.id);
+      let shown = this.meshes.get(object.id);
+      if (!shown) {
+        shown = new ObjectMesh(object.id);
+        this.meshes.set(object.id, shown);
+        this.sensor.add(shown.group);
+      }
+      shown.update(object, topologies.get(object.vertices.topologyHash), this.options.mesh);
+      shown.name = object.className;
+    }
+    for (const [id, shown] of this.meshes) {
+      if (present.has(id)) continue;
+      this.sensor.remove(shown.group);
+      shown.dispose();
+      this.meshes.delete(id);
+    }
+    const supportOfCamera = scene.support ? matrixOf(scene.support.TCameraSupport).invert() : null;
+    this.cloud.setObjects(scene.objects.map((object) => ({ box: object.bboxPx, color: colorOfId(object.id) })), supportOfCamera);
+    this.replace(this.table, scene.support ? [supportSurface(scene.support)] : []);
+    this.showChoice();
+    if (!this.isAimed && scene.objects.length) this.aim();
+    this.draw();
+  }
+
+  /** The world's z is the table's normal: what the scene calls world may be the camera's own frame. */
+  placeSensor(scene) {
+    const worldOfSensor = matrixOf(scene.TWorldSensor);
+    if (scene.support) {
+      const normal = new THREE.Vector3().setFromMatrixColumn(worldOfSensor.clone().multiply(matrixOf(scene.support.TCameraSupport)), 2);
+      if (normal.clone().applyQuaternion(this.level).angleTo(UP) > 0.05) {
+        this.level.setFromUnitVectors(normal, UP);
+        this.isAimed = false;
+      }
+    }
+    this.sensor.matrix.makeRotationFromQuaternion(this.level).multiply(worldOfSensor);
+  }
+
+  replace(group, children) {
+    for (const child of [...group.children]) {
+      child.traverse((part) => {
+        part.material?.dispose();
+        if (part.geometry?.type === "ShapeGeometry") part.geometry.dispose();
+      });
+      group.remove(child);
+    }
+    if (children.length) group.add(...children);
+  }
+
+  /** What depends on the options and on which object is picked. */
+  showChoice() {
+    const { options, last } = this;
+    if (!last) return;
+    this.cloud.points.visible = options.points && Boolean(this.cloud.isCalibrated);
+    this.table.visible = options.table;
+    this.labels.hidden = !options.names;
+    for (const [id, shown] of this.meshes) {
+      shown.group.visible = options.meshes;
+      shown.outline.visible = id === last.selected;
+    }
+    const grippers = [];
+    if (options.grasps)
+      for (const object of last.scene.objects)
+        object.grasps.slice(0, object.id === last.selected ? MAX_SHOWN_GRASPS : 1).forEach((grasp, k) => grippers.push(gripper(grasp, k === 0)));
+    this.replace(this.grasps, grippers);
+    this.draw();
+  }
+
+  select(id) {
+    if (this.last) this.last.selected = id;
+    this.showChoice();
+  }
+
+  setMeshMode(mode) {
+    this.options.mesh = mode;
+    for (const shown of this.meshes.values()) if (shown.topology) shown.color(mode);
+    this.draw();
+  }
+
+  /** Looks at the objects from where the sensor is. */
+  aim() {
+    this.sensor.updateMatrixWorld(true);
+    const box = new THREE.Box3();
+    for (const shown of this.meshes.values()) {
+      shown.group.updateMatrixWorld(true);
+      if (shown.topology) box.expandByObject(shown.mesh);
+    }
+    if (box.isEmpty()) return;
+    this.isAimed = true;
+    const eye = new THREE.Vector3().setFromMatrixPosition(this.sensor.matrixWorld);
+    box.getCenter(this.controls.target);
+    const size = Math.max(0.15, box.getSize(new THREE.Vector3()).length());
+    this.camera.position.copy(eye).sub(this.controls.target).normalize().multiplyScalar(1.25 * size + 0.25).add(this.controls.target);
+    this.controls.update();
+    this.draw();
+  }
+
+  /** Moves the eye: azimuth and elevation in radians, distance as a factor. */
+  orbit(azimuth, elevation, zoom) {
+    const offset = this.camera.position.clone().sub(this.controls.target);
+    const sphere = new THREE.Spherical().setFromVector3(new THREE.Vector3(offset.y, offset.z, offset.x)); // three's y is our z
+    sphere.theta += azimuth;
+    sphere.phi = Math.min(3.1, Math.max(0.05, sphere.phi - elevation));
+    sphere.radius *= zoom;
+    const turned = new THREE.Vector3().setFromSpherical(sphere);
+    this.camera.position.set(turned.z, turned.x, turned.y).add(this.controls.target);
+    this.controls.update();
+    this.draw();
+  }
+
+  placeLabels() {
+    const { clientWidth: width, clientHeight: height } = this.canvas;
+    const wanted = [];
+    for (const [id, shown] of this.meshes) {
+      if (!shown.top || !this.options.meshes) continue;
+      const at = shown.top.clone().applyMatrix4(shown.group.matrixWorld).project(this.camera);
+      if (at.z > 1) continue;
+      wanted.push({ id, name: shown.name, x: (0.5 + 0.5 * at.x) * width, y: (0.5 - 0.5 * at.y) * height });
+    }
+    while (this.labels.children.length < wanted.length) this.labels.append(document.createElement("span"));
+    while (this.labels.children.length > wanted.length) this.labels.lastChild.remove();
+    wanted.forEach(({ id, name, x, y }, i) => {
+      const label = this.labels.children[i];
+      label.textContent = name;
+      label.className = id === this.last.selected ? "selected" : "";
+      label.style.transform = `translate(-50%, -100%) translate(${x.toFixed(1)}px, ${y.toFixed(1)}px)`;
+    });
+  }
+}
