@@ -71,6 +71,7 @@ export class World {
   render() {
     this.isDue = false;
     const start = performance.now();
+    this.sensor.updateMatrixWorld(true); // the matrices below are set by hand, which three does not notice
     this.renderer.render(this.scene, this.camera);
     this.placeLabels();
     this.pause_ms = Math.min(200, 0.5 * (performance.now() - start));
