@@ -9,7 +9,7 @@ namespace {
 constexpr double kCap = 4.5;                   ///< Negative log likelihood of a pixel that is not explained: 3 sigma.
 constexpr double kFreeSpaceTolerance = 0.017;  ///< Edges waver and mixed pixels float by this much along the ray, metres.
 constexpr double kSpillCost = 1.5 * kCap;      ///< A model in seen free space is worse than a bare pixel.
-constexpr double kUnknownCost = 0.1 * kCap;    ///< Where nothing is known a model may be, but has no reason to spread.
+constexpr double kUnknownCost = 0.02 * kCap;    ///< Where nothing is known a model may be, but has no reason to spread.
 
 std::size_t at(int index) { return static_cast<std::size_t>(index); }
 

@@ -53,6 +53,17 @@ double lowest_point(const Primitive& primitive, const Eigen::Matrix3d& rotation,
   return lowest;
 }
 
+/// Half the extent of the rotated, scaled mean shape to either side of its origin, along `direction`.
+std::pair<double, double> reach_along(const Primitive& primitive, const Eigen::Matrix3d& rotation, const Vector3d& size, const Vector3d& direction) {
+  const Vector3d scaled = size.cwiseProduct(rotation.transpose() * direction);
+  double low = 1e300, high = -1e300;
+  for (const auto& p : primitive.mean) {
+    low = std::min(low, scaled.dot(p));
+    high = std::max(high, scaled.dot(p));
+  }
+  return {low, high};
+}
+
 PoseState initial_state(VisibleFit& fit, const ObservedExtent& extent, const Primitive& primitive, const Eigen::Matrix3d& rotation) {
   Vector3d log_size = primitive.log_size_mean;
   for (int pass = 0; pass < 2; ++pass) {  // the second pass linearises at a better size
@@ -64,7 +75,10 @@ PoseState initial_state(VisibleFit& fit, const ObservedExtent& extent, const Pri
         belief.observe(model.weights, model.weights.dot(log_size) + std::log(length_m / model.length_m), sigma);
     };
     observe(Vector3d::UnitZ(), extent.height_m, extent.height_sigma);
-    observe(extent.lateral, extent.width_m, extent.width_sigma);
+    // What is cut at a side is at least as wide as it is seen.
+    const bool cut = extent.low_open || extent.high_open;
+    const Vector3d expected = belief.mean().array().exp().matrix();
+    if (!cut || model_extent(primitive, rotation, expected, extent.lateral).length_m < extent.width_m) observe(extent.lateral, extent.width_m, extent.width_sigma);
     log_size = belief.mean();
   }
   PoseState state;
@@ -75,6 +89,13 @@ PoseState initial_state(VisibleFit& fit, const ObservedExtent& extent, const Pri
   state.T_support_object.translation().z() = -lowest_point(primitive, rotation, log_size.array().exp().matrix());
   fit.pose(state);
   state.T_support_object.translation().head<2>() += fit.visible_centroid_shift().head<2>();
+  if (extent.low_open != extent.high_open) {  // the end that is seen says where it is, the readings how far away
+    const auto [low, high] = reach_along(primitive, rotation, log_size.array().exp().matrix(), extent.lateral);
+    const double there = extent.low_open ? extent.high_m - high : extent.low_m - low;
+    state.T_support_object.translation() += (there - extent.lateral.dot(state.T_support_object.translation())) * extent.lateral;
+    fit.pose(state);
+    state.T_support_object.translation().head<2>() += fit.overlap_shift().head<2>();
+  }
   return state;
 }
 
@@ -97,6 +118,32 @@ void keep_peaks(std::vector<YawState>& states, int steps_around, int keep) {
   states = std::move(peaks);
 }
 
+/// Whether the first reading beside the object on this row is nearer than it, or outside the image: it may go on there.
+bool goes_on(const ObservedTile& tile, int cell, int direction) {
+  const int row = cell / tile.width;
+  const float depth = tile.depth[static_cast<std::size_t>(cell)];
+  for (int u = cell % tile.width + direction; u >= 0 && u < tile.width; u += direction) {
+    const float beside = tile.depth[static_cast<std::size_t>(row * tile.width + u)];
+    if (beside > 0) return beside < depth - 0.005F;
+  }
+  const int end = direction < 0 ? tile.rect.u0 : tile.rect.u1;
+  return end <= 0 || end >= tile.camera.width;
+}
+
+/// Of the rows of object cells, the share whose end on this side may not be the object's.
+double share_that_goes_on(const ObservedTile& tile, int direction) {
+  int rows = 0, open = 0;
+  for (std::size_t k = 0; k < tile.object_cells.size(); ++k) {
+    const int cell = tile.object_cells[k], row = cell / tile.width;
+    const bool last = direction < 0 ? k == 0 || tile.object_cells[k - 1] / tile.width != row
+                                    : k + 1 == tile.object_cells.size() || tile.object_cells[k + 1] / tile.width != row;
+    if (!last) continue;
+    ++rows;
+    open += goes_on(tile, cell, direction);
+  }
+  return rows > 0 ? static_cast<double>(open) / rows : 0.0;
+}
+
 }  // namespace
 
 ObservedExtent observed_extent(const ObjectView& view, const ObservedTile& tile) {
@@ -112,6 +159,13 @@ ObservedExtent observed_extent(const ObjectView& view, const ObservedTile& tile)
   for (const int cell : tile.object_cells) across.push_back(extent.lateral.dot(tile.points[static_cast<std::size_t>(cell)]));
   const auto [low, high] = quantile_range(across, 0.01);
   extent.width_m = high - low + tile.pixel_m(tile.object_cells.front());
+  extent.low_m = low;
+  extent.high_m = high;
+  constexpr double kCut = 0.5;
+  const bool leftwards = extent.lateral.dot(tile.T_camera_support.linear().row(0).transpose()) < 0;
+  const bool left_open = share_that_goes_on(tile, -1) > kCut, right_open = share_that_goes_on(tile, 1) > kCut;
+  extent.low_open = leftwards ? right_open : left_open;
+  extent.high_open = leftwards ? left_open : right_open;
   extent.height_m = view.height_m;
   if (view.top_cut) extent.height_sigma = 0.5;
   if (view.touches_border || view.occluded) extent.width_sigma = 0.4;

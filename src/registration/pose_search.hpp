@@ -22,12 +22,14 @@ struct ObservedExtent {
   double width_m = 0;                                  ///< 1-99 % extent along `lateral`.
   double height_m = 0;
   double width_sigma = 0.1, height_sigma = 0.04;       ///< Of their logarithms: wide where the view is cut.
+  double low_m = 0, high_m = 0;                        ///< Ends of the width: lateral . point.
+  bool low_open = false, high_open = false;            ///< There an occluder or the image's border is: the object may go on behind it.
 };
 
 ObservedExtent observed_extent(const ObjectView& view, const ObservedTile& tile);
 
 /// Steps through the yaws of one stable pose: size from the measured height and width under the class prior, position from the
-/// visible centroids (ALGORITHM 1.1-1.3), then between the steps beside the best ones. The `keep` best, best first.
+/// visible centroids, or from the end that is not cut (ALGORITHM 1.1-1.3), then between the steps beside the best ones. The `keep` best, best first.
 std::vector<ScoredState> search_yaws(VisibleFit& fit, const ObservedExtent& extent, const Primitive& primitive, int stable_pose, int yaw_steps, int keep);
 
 /// How many distinct yaws of `steps` over the full turn a class needs, given its symmetry when it rests like `pose`.

@@ -76,6 +76,12 @@ SearchTile::SearchTile(ObservedTile observed) : ObservedTile(std::move(observed)
   std::vector<std::uint8_t> is_object(at(cells()), 0);
   for (const int cell : object_cells) is_object[at(cell)] = 1;
   nearest_object = nearest_seed(is_object, width, height);
+  rim.assign(at(cells()), 0);
+  for (const int cell : object_cells) {
+    const int i = cell % width, j = cell / width;
+    rim[at(cell)] = (i > 0 && !is_object[at(cell - 1)]) || (i + 1 < width && !is_object[at(cell + 1)]) || (j > 0 && !is_object[at(cell - width)]) ||
+                    (j + 1 < height && !is_object[at(cell + width)]);
+  }
 }
 
 VisibleFit::VisibleFit(const SearchTile& tile, const Primitive& primitive, bool has_support)
@@ -122,6 +128,17 @@ Vector3d VisibleFit::visible_centroid_shift() const {
   for (const int cell : tile_.object_cells) observed += tile_.points[at(cell)];
   if (count == 0 || tile_.object_cells.empty()) return Vector3d::Zero();
   return observed / static_cast<double>(tile_.object_cells.size()) - modelled / static_cast<double>(count);
+}
+
+Vector3d VisibleFit::overlap_shift() const {
+  Vector3d sum = Vector3d::Zero();
+  int count = 0;
+  for (const int cell : tile_.object_cells) {
+    if (!rendered_.hit(cell)) continue;
+    sum += tile_.points[at(cell)] - camera_support_ - tile_.rays[at(cell)] * static_cast<double>(rendered_.depth[at(cell)]);
+    ++count;
+  }
+  return count > 0 ? Vector3d(sum / count) : Vector3d::Zero();
 }
 
 VisibleFit::SurfacePoint VisibleFit::surface_point(int cell) const {
@@ -184,7 +201,7 @@ void VisibleFit::add_silhouette_residuals(const FitScale& scale) {
     add(surface_point(cell), R_support_camera * Vector3d(du / length, dv / length, 0), -distance, weight);
   };
   for (const int cell : tile_.object_cells) {
-    if (!tile_.outline[at(cell)] || rendered_.hit(cell)) continue;
+    if (!tile_.rim[at(cell)] || rendered_.hit(cell)) continue;
     const int from = nearest_hit(rendered_, cell);
     if (from >= 0) draw(from, cell);
   }

@@ -32,6 +32,7 @@ struct FitScale {
 struct SearchTile : ObservedTile {
   explicit SearchTile(ObservedTile observed);
   std::vector<std::int32_t> nearest_object;  ///< Per cell: the nearest object cell in the image; -1 where there is none.
+  std::vector<std::uint8_t> rim;             ///< 1 for an object cell beside one that is none: the object's own silhouette, or where it is cut.
 };
 
 /// Compares what the camera saw of one object with the visible part of a posed primitive, and improves the pose (ALGORITHM 1.3-1.5).
@@ -55,6 +56,9 @@ class VisibleFit {
 
   /// Mean difference observed - rendered over the visible points, support frame; zero where nothing is covered.
   Eigen::Vector3d visible_centroid_shift() const;
+
+  /// The same over the cells that both cover, along the rays: how far in front of the model the readings are there.
+  Eigen::Vector3d overlap_shift() const;
 
   const PoseState& state() const { return state_; }
   double lowest_z() const;

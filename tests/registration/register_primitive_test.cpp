@@ -101,6 +101,32 @@ TEST(RegisterPrimitive, AWarmStartGivesTheSamePlaceInFewerSteps) {
   EXPECT_LE(warm.iterations, 6);
 }
 
+// An occluder before its right or left third takes neither width nor place from it.
+TEST(RegisterPrimitive, WhatIsCutGoesOnBehindTheOccluder) {
+  const TriangleMesh can = test::cylinder(0.04, 0.12, 64, 4);
+  for (const bool right : {false, true}) {
+    ObjectView view = view_from(can, 35, 0, 1);
+    int first = view.tile.width(), last = 0;
+    for (int v = 0; v < view.tile.height(); ++v)
+      for (int u = 0; u < view.tile.width(); ++u)
+        if (view.evidence.at(u, v) == Evidence::kObject) first = std::min(first, u), last = std::max(last, u);
+    const int cut = right ? last - (last - first) / 3 : first + (last - first) / 3;
+    for (int v = 0; v < view.tile.height(); ++v) {
+      for (int u = 0; u < view.tile.width(); ++u) {
+        if (right ? u < cut : u > cut) continue;
+        view.object_pixels -= view.evidence.at(u, v) == Evidence::kObject;
+        view.evidence.at(u, v) = Evidence::kOther;
+        view.depth_m.at(u, v) = 0.6F;
+      }
+    }
+    view.occluded = true;
+    const Bounds box = bounds(world_vertices(register_primitive(view, all_poses(test::can_primitive())).front(), view));
+    EXPECT_NEAR(box.size().x(), 0.08, 0.006) << right;
+    EXPECT_NEAR(box.centre().x(), 0, 0.004) << right;
+    EXPECT_NEAR(box.centre().y(), 0, 0.004) << right;
+  }
+}
+
 TEST(RegisterPrimitive, GivesAPlacementForHardlyAnyData) {
   ObjectView view = view_from(test::cylinder(0.04, 0.1), 35, 0, 1);
   int kept = 0;
