@@ -30,6 +30,18 @@ Result<Input> open_oni(const std::string& name, [[maybe_unused]] const InputOpti
 #endif
 }
 
+/// With the sensor's name as it was recorded.
+Result<Input> open_recording(const std::string& name, ReplayOptions options) {
+  auto streams = McapStreams::open(name, options);
+  if (!streams) return tl::unexpected(streams.error());
+  options.sensor = streams->recorded_sensor();
+  auto source = open_mcap(name, options);
+  if (!source) return tl::unexpected(source.error());
+  if (auto opened = (*source)->open(); !opened) return tl::unexpected(opened.error());
+  const McapSource* const opened_source = source->get();
+  return Input{name, stem_of(name), std::move(*source), nullptr, opened_source};
+}
+
 }  // namespace
 
 Result<Input> open_input(const std::string& name, const InputOptions& options) {
@@ -40,6 +52,7 @@ Result<Input> open_input(const std::string& name, const InputOptions& options) {
   replay.camera = options.camera;
   replay.depth_scale_m = options.depth_scale_m;
   replay.axes = options.axes;
+  if (name.ends_with(".mcap")) return open_recording(name, replay);
   auto source = open_replay(name, replay);
   if (!source) return tl::unexpected(source.error());
   if (auto opened = (*source)->open(); !opened) return tl::unexpected(opened.error());

@@ -7,6 +7,7 @@
 
 #include "gfp/core/error.hpp"
 #include "gfp/frame/camera_file.hpp"
+#include "replay/mcap_source.hpp"
 #include "replay/replay_source.hpp"
 
 namespace gfp {
@@ -24,10 +25,11 @@ struct Input {
   std::string stem;                      ///< For the names of what is made of it.
   std::unique_ptr<FrameSource> source;   ///< Open.
   const ReplaySource* replay = nullptr;  ///< The same, where it is one.
+  const McapSource* mcap = nullptr;      ///< Likewise.
 
   bool has_many_frames() const { return replay == nullptr || replay->frames() > 1; }
   /// How the last frame came to be; of what is no replay, nothing is to be said.
-  FrameReport report() const { return replay != nullptr ? replay->report() : FrameReport{}; }
+  FrameReport report() const { return replay != nullptr ? replay->report() : mcap != nullptr ? mcap->report() : FrameReport{}; }
 };
 
 /// Opens a file or folder (DESIGN, `gfp fit INPUT`). Errors: as open_replay(), for .oni as make_openni2_source(), and kUnsupported

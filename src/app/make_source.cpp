@@ -9,6 +9,7 @@
 #ifdef GFP_HAS_OPENNI2
 #include "openni2/openni2_source.hpp"
 #endif
+#include "replay/mcap_source.hpp"
 #include "replay/replay_source.hpp"
 #include "synthetic/synthetic_source.hpp"
 
@@ -31,6 +32,11 @@ Result<std::unique_ptr<FrameSource>> make_replay(const SensorConfig& sensor) {
     return failure(ErrorCode::kInvalidArgument, fmt::format("sensor {}: input is empty, expected the file or folder to replay", sensor.name));
   const auto options = common_options(sensor, sensor.replay);
   if (!options) return tl::unexpected(options.error());
+  if (sensor.input.ends_with(".mcap")) {
+    auto recording = open_mcap(sensor.input, *options);
+    if (!recording) return tl::unexpected(recording.error());
+    return std::unique_ptr<FrameSource>(std::move(*recording));
+  }
   auto source = open_replay(sensor.input, *options);
   if (!source) return tl::unexpected(source.error());
   return std::unique_ptr<FrameSource>(std::move(*source));

@@ -10,11 +10,15 @@ namespace gfp {
 /// `status` lives as long as `app`.
 void add_config_command(CLI::App& app, ExitStatus& status);
 void add_devices_command(CLI::App& app, ExitStatus& status);
+void add_diff_command(CLI::App& app, ExitStatus& status);
 void add_echo_command(CLI::App& app, ExitStatus& status);
 void add_fit_command(CLI::App& app, ExitStatus& status);
 void add_eval_command(CLI::App& app, ExitStatus& status);
 void add_key_command(CLI::App& app, ExitStatus& status);
 void add_primitive_command(CLI::App& app, ExitStatus& status);
+void add_record_command(CLI::App& app, ExitStatus& status);
+void add_repair_command(CLI::App& app, ExitStatus& status);
+void add_replay_command(CLI::App& app, ExitStatus& status);
 void add_sub_command(CLI::App& app, ExitStatus& status);
 void add_top_command(CLI::App& app, ExitStatus& status);
 

@@ -142,7 +142,7 @@ void add_fit_command(CLI::App& app, ExitStatus& status) {
   CLI::App& command = *app.add_subcommand("fit", "Fit closed models and grasps to every object of recorded frames");
   const auto arguments = std::make_shared<FitArguments>();  // lives as long as the callback that reads it
   PipelineOptions& pipeline = arguments->pipeline;
-  command.add_option("INPUT", arguments->inputs, "Organised .pcd, .pclzf, 16-bit depth .png, .oni, or a folder: of these, TUM-style, or recorded by libfreenect")->required();
+  command.add_option("INPUT", arguments->inputs, "Organised .pcd, .pclzf, 16-bit depth .png, .oni, .mcap, or a folder: of these, TUM-style, or recorded by libfreenect")->required();
   command.add_option("--profile", pipeline.profile, "What the stages do")->capture_default_str();
   command.add_option("--method", pipeline.method, "How objects are modelled; by default as the profile does");
   command.add_option("--class", pipeline.recognition.only_class, "The objects' class, where it is known");

@@ -19,6 +19,10 @@ int run(int argc, char** argv) {
   gfp::add_primitive_command(app, status);
   gfp::add_config_command(app, status);
   gfp::add_devices_command(app, status);
+  gfp::add_record_command(app, status);
+  gfp::add_replay_command(app, status);
+  gfp::add_repair_command(app, status);
+  gfp::add_diff_command(app, status);
   gfp::add_echo_command(app, status);
   gfp::add_sub_command(app, status);
   gfp::add_top_command(app, status);

@@ -76,6 +76,8 @@ Result<void> validate(const DaemonOptions& options) {
     return failure(ErrorCode::kInvalidArgument, "publish.authorized_keys is empty, expected a folder of .pub files beside publish.curve_key");
   if (options.robot.min_reach_m >= options.robot.max_reach_m)
     return failure(ErrorCode::kInvalidArgument, fmt::format("robot.min_reach_m = {}, expected less than max_reach_m = {}", options.robot.min_reach_m, options.robot.max_reach_m));
+  if (!is_topic_word(options.recording.prefix))
+    return failure(ErrorCode::kInvalidArgument, fmt::format("recording.prefix = {}, expected 1 to 64 of a-z, 0-9 and _", options.recording.prefix));
   const auto& cloud = options.pipeline.cloud;
   if (cloud.min_depth_m >= cloud.max_depth_m)
     return failure(ErrorCode::kInvalidArgument,

@@ -10,6 +10,7 @@
 #include "gfp/core/fields.hpp"
 #include "gfp/frame/run_source.hpp"
 #include "gfp/pipeline/pipeline_options.hpp"
+#include "gfp/recording/recording_series.hpp"
 #include "openni2/openni2_options.hpp"
 #include "publish/publish_options.hpp"
 #include "replay/replay_options.hpp"
@@ -79,6 +80,7 @@ struct DaemonOptions {
   PublishOptions publish;
   ViewOptions view;
   RobotOptions robot;
+  RecordingOptions recording;
   LogOptions log;
   PipelineOptions pipeline;
 };
@@ -92,6 +94,7 @@ void visit_fields(DaemonOptions& o, Visitor&& field) {
   field.section("publish", o.publish);
   field.section("view", o.view);
   field.section("robot", o.robot);
+  field.section("recording", o.recording);
   field.section("log", o.log);
   field.section("pipeline", o.pipeline);
 }

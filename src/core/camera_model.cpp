@@ -1,5 +1,6 @@
 #include "gfp/core/camera_model.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -26,6 +27,21 @@ Result<void> validate(const CameraModel& camera) {
   for (const double c : camera.coefficients)
     if (!std::isfinite(c)) return failure(ErrorCode::kInvalidArgument, bound_message("distortion.coefficients", c, "finite numbers"));
   return {};
+}
+
+Result<CameraModel> camera_from_matrix(std::uint32_t width, std::uint32_t height, std::span<const double, 9> K, std::string_view distortion_model,
+                                       std::vector<double> coefficients) {
+  const auto side = [](std::uint32_t value) { return static_cast<int>(std::min<std::uint32_t>(value, kMaxImageSide + 1)); };
+  CameraModel camera{side(width), side(height), K[0], K[4], K[2], K[5], DistortionModel::kNone, {}};
+  const bool is_distorted = std::any_of(coefficients.begin(), coefficients.end(), [](double c) { return c != 0; });
+  if (is_distorted && distortion_model != "plumb_bob" && distortion_model != "rational_polynomial")
+    return failure(ErrorCode::kUnsupported, "camera.distortion = " + std::string(distortion_model.substr(0, 32)) + ", expected plumb_bob or rational_polynomial");
+  if (is_distorted) {
+    camera.distortion = distortion_model == "plumb_bob" ? DistortionModel::kPlumbBob : DistortionModel::kRationalPolynomial;
+    camera.coefficients = std::move(coefficients);
+  }
+  if (Result<void> valid = validate(camera); !valid) return tl::unexpected(valid.error());
+  return camera;
 }
 
 CameraModel default_kinect_camera(int width, int height) {

@@ -18,6 +18,8 @@ bool same(const SensorConfig& a, const SensorConfig& b) {
   return config::to_yaml(left) == config::to_yaml(right);
 }
 
+HandOver hand_over(const DaemonOptions& options) { return options.lossless ? HandOver::kLossless : HandOver::kLatestWins; }
+
 }  // namespace
 
 Result<std::unique_ptr<Daemon>> Daemon::start(DaemonOptions options, DaemonParts parts, std::uint64_t session) {
@@ -35,6 +37,7 @@ Result<std::unique_ptr<Daemon>> Daemon::start(DaemonOptions options, DaemonParts
     MutexLock lock(self.mutex_);  // the desk may be at work already
     self.publisher_ = std::move(*publisher);
   }
+  if (options.recording.mode != "off") self.recorder_ = std::make_unique<Recorder>(options.recording, hand_over(options));
   self.pipeline_ = std::jthread([&self](const std::stop_token& stop) { self.run_pipeline(stop); });
   auto sources = daemon->make_sources(options);
   if (!sources) return tl::unexpected(sources.error());
@@ -45,7 +48,7 @@ Result<std::unique_ptr<Daemon>> Daemon::start(DaemonOptions options, DaemonParts
 Daemon::Daemon(DaemonOptions options, DaemonParts parts)
     : parts_(std::move(parts)),
       threads_(options.threads),
-      inbox_(options.lossless ? HandOver::kLossless : HandOver::kLatestWins),
+      inbox_(hand_over(options)),
       options_(std::move(options)),
       pipeline_options_(std::make_shared<const PipelineOptions>(options_.pipeline)) {}
 
@@ -94,11 +97,10 @@ void Daemon::start_sensors(const DaemonOptions& options, Sources sources) {
   }
   for (auto& [name, worker] : retired) worker->request_stop();
   retired.clear();
-  const HandOver policy = options.lossless ? HandOver::kLossless : HandOver::kLatestWins;
   for (const SensorConfig& sensor : options.sensors) {
     const auto source = sources.find(sensor.name);
     if (source == sources.end()) continue;
-    auto worker = std::make_shared<SensorWorker>(sensor, std::move(source->second), policy, inbox_, *publisher_);
+    auto worker = std::make_shared<SensorWorker>(sensor, std::move(source->second), hand_over(options), inbox_, *publisher_, recorder_.get());
     MutexLock lock(mutex_);
     sensors_[sensor.name] = std::move(worker);
   }
@@ -119,6 +121,7 @@ void Daemon::run_pipeline(const std::stop_token& stop) {
       PipelineResult result = arena.execute([&] { return parts_.process(**frame, memory, *options); });
       memory = std::move(result.memory);
       const auto scene = std::make_shared<const Scene>(std::move(result.scene));
+      if (recorder_) recorder_->put(scene);
       publisher_->put(scene);
       MutexLock lock(mutex_);
       last_scenes_[scene->sensor] = scene;
@@ -157,6 +160,7 @@ void Daemon::stop() {
   pipeline_.request_stop();
   sensors.clear();
   if (pipeline_.joinable()) pipeline_.join();
+  recorder_.reset();  // closes the file
   if (publisher_) publisher_->stop();  // before the desk, which it may still hand requests to
 }
 

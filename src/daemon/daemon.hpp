@@ -9,6 +9,7 @@
 #include "config/daemon_options.hpp"
 #include "daemon/control_desk.hpp"
 #include "daemon/frame_inbox.hpp"
+#include "daemon/recorder.hpp"
 #include "daemon/sensor_worker.hpp"
 #include "gfp/pipeline/process_frame.hpp"
 #include "publish/publisher.hpp"
@@ -21,9 +22,10 @@ struct DaemonParts {
   std::function<PipelineResult(const Frame&, const SceneMemory&, const PipelineOptions&)> process;
 };
 
-/// gfpd without its command line: sensors, one pipeline, one publisher.
+/// gfpd without its command line: sensors, one pipeline, one publisher, and a recorder where one is configured.
 ///
 ///     SensorWorker (2 threads each) --FrameInbox--> pipeline thread (oneTBB arena) --> Publisher (1 thread)
+///               `------------------ frames, scenes -----------------`---------------> Recorder (1 thread)
 ///                                                              control requests <--> ControlDesk (1 thread)
 ///
 /// start(), reload(), tick() and stop() belong to one thread, the one that waits for signals.
@@ -34,8 +36,8 @@ class Daemon {
   ~Daemon();  ///< As stop().
 
   /// Takes over a new configuration: sensors that are configured as before go on without losing a frame, others are stopped,
-  /// started or started anew; the pipeline's options hold from the next frame on. Endpoints and thread count stay until the
-  /// next start. On an error nothing has changed. Errors: as start().
+  /// started or started anew; the pipeline's options hold from the next frame on. Endpoints, thread count and
+  /// recording stay until the next start. On an error nothing has changed. Errors: as start().
   Result<void> reload(DaemonOptions options);
 
   void tick();  ///< Once a second: statistics and statuses.
@@ -43,6 +45,7 @@ class Daemon {
   void stop();  ///< Drains: the frame at work becomes a scene, the last state is sent. Idempotent.
 
   Publisher& publisher() { return *publisher_; }
+  Recorder* recorder() { return recorder_.get(); }  ///< nullptr: recording.mode is `off`.
 
  private:
   Daemon(DaemonOptions options, DaemonParts parts);
@@ -65,6 +68,7 @@ class Daemon {
 
   const DaemonParts parts_;
   const int threads_;  ///< Of the pipeline; 0: one a core.
+  std::unique_ptr<Recorder> recorder_;
   FrameInbox inbox_;
   mutable Mutex mutex_;
   DaemonOptions options_ GFP_GUARDED_BY(mutex_);

@@ -1,4 +1,5 @@
-// gfpd: from cameras to graspable objects, for whoever subscribes. SIGTERM and SIGINT drain and end, SIGHUP reloads.
+// gfpd: from cameras to graspable objects, for whoever subscribes. SIGTERM and SIGINT drain and end, SIGHUP reloads, SIGUSR1
+// triggers the recording ring.
 #include <csignal>
 
 #include <CLI/CLI.hpp>
@@ -70,6 +71,7 @@ void serve(gfp::Daemon& daemon, const Arguments& arguments, const sigset_t& sign
       reload(daemon, arguments);
       gfp::tell_service_manager("READY=1");
     }
+    if (signal == SIGUSR1 && daemon.recorder() != nullptr) daemon.recorder()->trigger();
     if (signal == SIGTERM || signal == SIGINT) return spdlog::info("stopping on signal {}", signal);
   }
 }
@@ -96,7 +98,7 @@ int run(const Arguments& arguments) {
   // Blocked before the first thread starts, so that every thread inherits it and only serve() gets signals.
   sigset_t signals;
   sigemptyset(&signals);
-  for (const int signal : {SIGTERM, SIGINT, SIGHUP}) sigaddset(&signals, signal);
+  for (const int signal : {SIGTERM, SIGINT, SIGHUP, SIGUSR1}) sigaddset(&signals, signal);
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);
 
   gfp::builtin_library();  // made before the first frame, not during it
@@ -128,7 +130,7 @@ int main(int argc, char** argv) {
   app.add_option("--config", arguments.config, "Configuration file (YAML); see config/default.yaml for every option");
   app.add_option("--set", arguments.settings, "Overrides one option: path.to.key=value; may be repeated")->take_all();
   app.add_flag("--insecure", arguments.insecure, "Allows tcp endpoints, which are neither encrypted nor authenticated");
-  app.footer("SIGTERM and SIGINT end it after the last state was sent; SIGHUP reloads the configuration.");
+  app.footer("SIGTERM and SIGINT end it after the last state was sent; SIGHUP reloads the configuration; SIGUSR1 makes a file of what a recording ring holds.");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -4,12 +4,13 @@
 
 namespace gfp {
 
-SensorWorker::SensorWorker(SensorConfig config, std::unique_ptr<FrameSource> source, HandOver policy, FrameInbox& inbox, Publisher& publisher)
+SensorWorker::SensorWorker(SensorConfig config, std::unique_ptr<FrameSource> source, HandOver policy, FrameInbox& inbox, Publisher& publisher, Recorder* recorder)
     : config_(std::move(config)),
       source_(std::move(source)),
       info_(source_->info()),
       inbox_(inbox),
       publisher_(publisher),
+      recorder_(recorder),
       statistics_(monotonic_now()),
       slot_(policy),
       relay_([this](const std::stop_token& stop) { relay(stop); }),
@@ -31,6 +32,7 @@ void SensorWorker::relay(const std::stop_token& stop) {
   while (std::optional<FramePtr> frame = slot_.take(stop)) {
     statistics_.frame_arrived();
     publisher_.put(*frame);
+    if (recorder_ != nullptr) recorder_->put(*frame);
     inbox_.put(std::move(*frame), stop);
   }
 }

@@ -6,6 +6,7 @@
 
 #include "config/daemon_options.hpp"
 #include "daemon/frame_inbox.hpp"
+#include "daemon/recorder.hpp"
 #include "daemon/sensor_statistics.hpp"
 #include "gfp/frame/run_source.hpp"
 #include "publish/publisher.hpp"
@@ -17,8 +18,9 @@ namespace gfp {
 ///     source --driver thread--> LatestSlot --relay thread--> publisher (sensor topics), inbox (pipeline)
 class SensorWorker {
  public:
-  /// Starts at once. `publisher` and `inbox` must live longer.
-  SensorWorker(SensorConfig config, std::unique_ptr<FrameSource> source, HandOver policy, FrameInbox& inbox, Publisher& publisher);
+  /// Starts at once. `publisher`, `inbox` and `recorder` (nullptr: none) must live longer.
+  SensorWorker(SensorConfig config, std::unique_ptr<FrameSource> source, HandOver policy, FrameInbox& inbox, Publisher& publisher,
+               Recorder* recorder = nullptr);
   ~SensorWorker();
 
   const SensorConfig& config() const { return config_; }
@@ -37,6 +39,7 @@ class SensorWorker {
   const SourceInfo info_;
   FrameInbox& inbox_;
   Publisher& publisher_;
+  Recorder* const recorder_;
   SensorStatistics statistics_;
   LatestSlot<FramePtr> slot_;
   mutable Mutex mutex_;

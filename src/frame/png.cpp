@@ -129,8 +129,8 @@ Result<PngFile> load(const std::filesystem::path& path) {
   return PngFile{std::move(*bytes), *header};
 }
 
-tl::unexpected<Error> wrong_pixels(const std::filesystem::path& path, const PngHeader& header, std::string_view expected) {
-  return failure(ErrorCode::kUnsupported, fmt::format("{}: pixels are {} bit {}, expected {}", path.string(), header.bit_depth,
+tl::unexpected<Error> wrong_pixels(const std::string& name, const PngHeader& header, std::string_view expected) {
+  return failure(ErrorCode::kUnsupported, fmt::format("{}: pixels are {} bit {}, expected {}", name, header.bit_depth,
                                                       header.grey ? "grey" : "colour", expected));
 }
 
@@ -182,16 +182,22 @@ Result<PngHeader> read_png_header(const std::filesystem::path& path) {
 }
 
 Result<Image<std::uint16_t>> read_png_depth(const std::filesystem::path& path) {
-  const Result<PngFile> file = load(path);
-  if (!file) return tl::unexpected<Error>(file.error());
-  if (!file->header.grey || file->header.bit_depth != 16) return wrong_pixels(path, file->header, "16 bit grey (depth)");
-  return decode<std::uint16_t>(file->bytes, file->header, path.string(), [](png_structp png, png_infop) { png_set_swap(png); });
+  const Result<std::string> bytes = read_file(path, kMaxPngBytes);
+  if (!bytes) return tl::unexpected<Error>(bytes.error());
+  return decode_png_depth(*bytes, path.string());
+}
+
+Result<Image<std::uint16_t>> decode_png_depth(std::string_view bytes, const std::string& name) {
+  const Result<PngHeader> header = parse_header(bytes, name);
+  if (!header) return tl::unexpected<Error>(header.error());
+  if (!header->grey || header->bit_depth != 16) return wrong_pixels(name, *header, "16 bit grey (depth)");
+  return decode<std::uint16_t>(bytes, *header, name, [](png_structp png, png_infop) { png_set_swap(png); });
 }
 
 Result<Image<std::uint8_t>> read_png_grey(const std::filesystem::path& path) {
   const Result<PngFile> file = load(path);
   if (!file) return tl::unexpected<Error>(file.error());
-  if (!file->header.grey || file->header.bit_depth > 8) return wrong_pixels(path, file->header, "8 bit grey");
+  if (!file->header.grey || file->header.bit_depth > 8) return wrong_pixels(path.string(), file->header, "8 bit grey");
   return decode<std::uint8_t>(file->bytes, file->header, path.string(), [](png_structp png, png_infop) { png_set_packing(png); });
 }
 

@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -101,8 +102,10 @@ class MemorySource final : public ByteSource {
 };
 
 Result<std::unique_ptr<ByteFile>> open_for_writing(const std::filesystem::path& path, int flags) {
-  Descriptor file(open(path.c_str(), O_WRONLY | O_CLOEXEC | flags, 0644));
+  Descriptor file(open(path.c_str(), O_WRONLY | O_CLOEXEC | (flags & ~O_TRUNC), 0644));
   if (file.get() < 0) return system_failure(path, "cannot be opened for writing", errno);
+  if (flock(file.get(), LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) return failure(ErrorCode::kIo, fmt::format("{}: another process is writing it", path.string()));
+  if ((flags & O_TRUNC) != 0 && ftruncate(file.get(), 0) != 0) return system_failure(path, "cannot be cut", errno);
   return std::unique_ptr<ByteFile>(std::make_unique<PosixFile>(path, std::move(file)));
 }
 
@@ -110,6 +113,11 @@ Result<std::unique_ptr<ByteFile>> open_for_writing(const std::filesystem::path& 
 
 Result<std::unique_ptr<ByteFile>> create_file(const std::filesystem::path& path) { return open_for_writing(path, O_CREAT | O_TRUNC); }
 Result<std::unique_ptr<ByteFile>> open_file_for_update(const std::filesystem::path& path) { return open_for_writing(path, 0); }
+
+bool is_being_written(const std::filesystem::path& path) {
+  const Descriptor file(open(path.c_str(), O_RDONLY | O_CLOEXEC));
+  return file.get() >= 0 && flock(file.get(), LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+}
 
 Result<std::unique_ptr<ByteSource>> open_source(const std::filesystem::path& path) {
   Descriptor file(open(path.c_str(), O_RDONLY | O_CLOEXEC));

@@ -149,6 +149,7 @@ Result<RepairReport> copy_sound_part(Patient patient, const fs::path& output, co
 }  // namespace
 
 Result<RepairReport> repair_mcap(const fs::path& file, const McapReadOptions& options) {
+  if (is_being_written(file)) return failure(ErrorCode::kIo, fmt::format("{}: another process is writing it", file.string()));
   auto patient = examine(file, options);
   if (!patient) return tl::unexpected(patient.error());
   if (patient->has_summary) return report_of(*patient, Outcome::kSound);

@@ -32,7 +32,7 @@ static_assert(static_cast<int>(DistortionModel::kRationalPolynomial) == v1::Came
 
 void fill(const std::string& sensor, std::uint64_t sequence, const Stamps& stamps, v1::FrameHeader& message) {
   message.set_sensor(sensor);
-  message.set_frame_id(sensor + "_optical");
+  message.set_frame_id(frame_id_of(sensor));
   message.set_sequence(sequence);
   message.set_stamp_sensor_ns(stamps.sensor.count());
   message.set_stamp_monotonic_ns(stamps.monotonic.count());

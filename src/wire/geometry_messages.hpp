@@ -14,6 +14,9 @@ void fill(const Eigen::Vector3d& vector, v1::Vector3& message);
 void fill(const Transform& transform, v1::Transform& message);
 void fill(const CameraModel& camera, v1::Camera& message);
 
+/// The frame of a sensor's coordinates, in messages: `<sensor>_optical`.
+inline std::string frame_id_of(const std::string& sensor) { return sensor + "_optical"; }
+
 /// Which capture: everything but the Envelope's session.
 void fill(const std::string& sensor, std::uint64_t sequence, const Stamps& stamps, v1::FrameHeader& message);
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <cstring>
 
 #include "wire/geometry_messages.hpp"
@@ -43,6 +44,28 @@ void fill_camera(const Frame& frame, v1::CameraInfo& message) {
   fill(frame.camera, *message.mutable_camera());
   fill(frame.T_world_sensor, *message.mutable_t_world_sensor());
   if (frame.up_camera) fill(*frame.up_camera, *message.mutable_up_camera());
+  message.mutable_noise()->set_base_m(frame.noise.base_m);
+  message.mutable_noise()->set_quadratic_per_m(frame.noise.quadratic_per_m);
+  message.mutable_noise()->set_reference_m(frame.noise.reference_m);
+}
+
+Result<void> camera_into(const v1::CameraInfo& message, Frame& frame) {
+  auto camera = camera_from(message.camera());
+  if (!camera) return tl::unexpected(camera.error());
+  const auto pose = transform_from(message.t_world_sensor(), "camera.T_world_sensor");
+  if (!pose) return tl::unexpected(pose.error());
+  const v1::SensorNoise& noise = message.noise();
+  const auto is_length = [](double value) { return std::isfinite(value) && value >= 0; };
+  if (!is_length(noise.base_m()) || !is_length(noise.quadratic_per_m()) || !is_length(noise.reference_m()))
+    return failure(ErrorCode::kCorruptData, fmt::format("camera.noise = {}, {}, {}, expected numbers not below 0", noise.base_m(), noise.quadratic_per_m(), noise.reference_m()));
+  frame.sensor = message.header().sensor();
+  frame.sequence = message.header().sequence();
+  frame.stamps = stamps_from(message.header());
+  frame.camera = std::move(*camera);
+  frame.T_world_sensor = *pose;
+  if (message.has_up_camera()) frame.up_camera = vector_from(message.up_camera());
+  if (message.has_noise()) frame.noise = {noise.base_m(), noise.quadratic_per_m(), noise.reference_m()};
+  return {};
 }
 
 std::span<const std::byte> depth_blob(const Frame& frame) { return std::as_bytes(std::span(frame.depth.pixels.pixels)); }

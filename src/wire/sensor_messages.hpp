@@ -13,6 +13,9 @@ void fill_depth(const Frame& frame, v1::DepthImage& message);
 void fill_color(const Frame& frame, v1::ColorImage& message);
 void fill_camera(const Frame& frame, v1::CameraInfo& message);
 
+/// Everything of a frame but its images. Errors: kInvalidArgument (camera), kCorruptData.
+Result<void> camera_into(const v1::CameraInfo& message, Frame& frame);
+
 /// The bytes of an image's pixels as they travel, for as long as the image lives.
 std::span<const std::byte> depth_blob(const Frame& frame);
 std::span<const std::byte> color_blob(const Frame& frame);

@@ -1,7 +1,10 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <optional>
+#include <span>
+#include <string_view>
 #include <vector>
 
 #include "gfp/core/error.hpp"
@@ -28,6 +31,11 @@ struct CameraModel {
 /// Errors: kInvalidArgument naming the member, its value and its bound (sides in [1, kMaxImageSide], focal lengths
 /// in (0, 1e5], all finite).
 Result<void> validate(const CameraModel& camera);
+
+/// From what calibrations say: K (3 x 3, row-major), the name of the distortion model as in ROS and Foxglove (`plumb_bob`,
+/// `rational_polynomial`, empty) and its coefficients; all zero is none. Errors: as validate(), kUnsupported (another model).
+Result<CameraModel> camera_from_matrix(std::uint32_t width, std::uint32_t height, std::span<const double, 9> K, std::string_view distortion_model,
+                                       std::vector<double> coefficients);
 
 /// 640x480, fx = fy = 525: the usual Kinect v1 / Xtion depth camera, used where nothing better is known.
 CameraModel default_kinect_camera(int width = 640, int height = 480);

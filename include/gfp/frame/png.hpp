@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <filesystem>
 #include <span>
+#include <string>
+#include <string_view>
 
 #include "gfp/core/error.hpp"
 #include "gfp/core/image.hpp"
@@ -26,6 +28,9 @@ Result<Image<std::uint16_t>> read_png_depth(const std::filesystem::path& path);
 Result<Image<std::uint8_t>> read_png_grey(const std::filesystem::path& path);
 /// Any PNG as RGB: palettes and grey are expanded, alpha is dropped, 16 bits are cut to 8. Errors: as read_png_header().
 Result<Image<Rgb8>> read_png_color(const std::filesystem::path& path);
+
+/// The same from bytes; `name` is what errors name.
+Result<Image<std::uint16_t>> decode_png_depth(std::string_view bytes, const std::string& name);
 
 /// Errors: kInvalidArgument (empty image, or a side above kMaxImageSide), kIo.
 Result<void> write_png(const std::filesystem::path& path, const Image<Rgb8>& image);

@@ -29,9 +29,11 @@ class ByteSource {
   virtual Result<void> read_at(std::uint64_t offset, std::size_t count, std::string& out) = 0;
 };
 
-/// Errors: kIo naming the path and the system's reason.
+/// Who writes a file holds a lock on it (flock) for as long as the ByteFile lives, so that nobody repairs what is still being written.
+/// Errors: kIo naming the path and the system's reason, or that another process is writing it.
 Result<std::unique_ptr<ByteFile>> create_file(const std::filesystem::path& path);
 Result<std::unique_ptr<ByteFile>> open_file_for_update(const std::filesystem::path& path);
+bool is_being_written(const std::filesystem::path& path);
 /// Errors: kNotFound, kUnsupported (not a regular file), kIo.
 Result<std::unique_ptr<ByteSource>> open_source(const std::filesystem::path& path);
 std::unique_ptr<ByteSource> source_of(std::string bytes);

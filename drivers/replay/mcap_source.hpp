@@ -1,0 +1,53 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "gfp/frame/frame_source.hpp"
+#include "gfp/frame/pacer.hpp"
+#include "replay/mcap_streams.hpp"
+#include "replay/replay_control.hpp"
+#include "replay/replay_options.hpp"
+
+namespace gfp {
+
+/// Plays an MCAP recording as the camera that made it: in its own rhythm times `speed`, every `step`-th frame, from `start_s` on.
+/// A control may pause it, step and seek. Stamps are the recorded ones and rise strictly; those of the host are the recorded ones
+/// too in deterministic mode (`frame_time`), so that nothing depends on how fast it is played. One thread at a time.
+/// grab() errors: kTimeout (not due yet, or paused), kEndOfStream, and what McapStreams::load() says of a bad frame, which is then left behind.
+class McapSource final : public FrameSource {
+ public:
+  McapSource(McapStreams streams, ReplayOptions options);
+
+  SourceInfo info() const override;
+  Result<void> open() override;
+  Result<Frame> grab(std::chrono::milliseconds timeout) override;
+  void close() noexcept override { pacer_.restart(); }
+
+  std::size_t frames() const { return streams_.frames(); }
+  const FrameReport& report() const { return report_; }
+  ReplayControl& control() { return *control_; }
+
+ private:
+  void follow_control();
+  Nanoseconds since_begin(std::size_t index) const { return streams_.time(index) - streams_.time(0); }
+  std::size_t first_at(Nanoseconds position) const;
+
+  McapStreams streams_;
+  const ReplayOptions options_;
+  const std::shared_ptr<ReplayControl> control_;
+  Pacer pacer_;
+  double speed_ = 1;              ///< That the pacer counts with.
+  std::size_t position_ = 0;      ///< Next frame.
+  std::uint64_t sequence_ = 0;
+  Nanoseconds due_{};             ///< In the pacer's time: recorded time divided by the speed.
+  Nanoseconds last_played_{};     ///< Recorded time of the last frame.
+  Nanoseconds pass_offset_{};     ///< Added to the stamps of later passes.
+  Nanoseconds last_stamp_{-1};
+  FrameReport report_;
+};
+
+/// Errors: as McapStreams::open(), and kInvalidArgument for an option out of its bounds.
+Result<std::unique_ptr<McapSource>> open_mcap(const std::filesystem::path& file, const ReplayOptions& options = {});
+
+}  // namespace gfp

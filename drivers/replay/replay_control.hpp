@@ -1,0 +1,47 @@
+#pragma once
+
+#include <condition_variable>
+#include <cstdint>
+#include <optional>
+#include <stop_token>
+
+#include "gfp/core/mutex.hpp"
+#include "gfp/core/time.hpp"
+
+namespace gfp {
+
+/// The knobs of a replay, for whoever shows or steers it: the player asks, anybody turns. Safe from any thread.
+class ReplayControl {
+ public:
+  struct State {
+    bool paused = false;
+    double speed = 1;          ///< 0: as fast as frames are taken.
+    Nanoseconds position{};    ///< Of the last frame, since the beginning.
+    Nanoseconds duration{};    ///< From the first frame to the last.
+    std::uint64_t frames = 0;  ///< Played so far.
+    bool ended = false;
+  };
+
+  void pause();
+  void resume();
+  void step();                        ///< One more frame while paused.
+  void set_speed(double speed);       ///< At least 0.
+  void seek(Nanoseconds position);    ///< The next frame is the first one at or after it.
+  State state() const;
+
+  // The player's side.
+  void begin(Nanoseconds duration, double speed);
+  void played(Nanoseconds position, bool ended);
+  std::optional<Nanoseconds> take_seek();
+  /// Waits while paused, at most so long. True: go on.
+  bool wait_until_running(std::chrono::milliseconds timeout);
+
+ private:
+  mutable Mutex mutex_;
+  std::condition_variable_any changed_;
+  State state_ GFP_GUARDED_BY(mutex_);
+  std::optional<Nanoseconds> seek_ GFP_GUARDED_BY(mutex_);
+  int steps_ GFP_GUARDED_BY(mutex_) = 0;
+};
+
+}  // namespace gfp

@@ -1,0 +1,112 @@
+// gfp replay FILE: a gfpd whose camera is a recording. Every frame is processed, in the recording's rhythm, and published.
+#include <fmt/format.h>
+
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <random>
+
+#include "app/builtin_library.hpp"
+#include "cli/commands.hpp"
+#include "cli/listen.hpp"
+#include "daemon/daemon.hpp"
+#include "daemon/logging.hpp"
+#include "replay/mcap_source.hpp"
+
+namespace gfp {
+namespace {
+
+struct ReplayArguments {
+  std::string file, config;
+  std::vector<std::string> settings;
+  ReplayOptions replay;
+  std::string name;
+  ListenArguments listen;
+};
+
+/// What is counted on the pipeline's thread and read on this one.
+struct Progress {
+  std::atomic<std::uint64_t> frames{0}, objects{0};
+};
+
+DaemonParts parts_of(const ReplayArguments& arguments, std::shared_ptr<Progress> progress) {
+  return {[arguments](const SensorConfig& sensor) -> Result<std::unique_ptr<FrameSource>> {
+            ReplayOptions options = arguments.replay;
+            options.sensor = sensor.name;
+            auto source = open_mcap(arguments.file, options);
+            if (!source) return tl::unexpected(source.error());
+            return std::unique_ptr<FrameSource>(std::move(*source));
+          },
+          [progress](const Frame& frame, const SceneMemory& memory, const PipelineOptions& options) {
+            PipelineResult result = process_frame(frame, memory, builtin_library(), options);
+            progress->objects += result.scene.objects.size();
+            ++progress->frames;
+            return result;
+          }};
+}
+
+Result<DaemonOptions> options_of(const ReplayArguments& arguments, const std::string& sensor) {
+  std::vector<std::string> settings = arguments.settings;
+  auto options = config::load_daemon_options(arguments.config, settings);
+  if (!options) return options;
+  options->lossless = true;
+  options->sensors = {SensorConfig{}};
+  options->sensors[0].name = sensor;
+  options->sensors[0].driver = "replay";
+  options->sensors[0].input = arguments.file;
+  if (auto valid = validate(*options); !valid) return tl::unexpected(valid.error());
+  return options;
+}
+
+void replay(ReplayArguments& arguments, ExitStatus& status) {
+  auto probe = McapStreams::open(arguments.file, arguments.replay);
+  if (!probe) return status.fail(std::cerr, "replay", probe.error());
+  const std::string sensor = !arguments.name.empty() ? arguments.name : probe->recorded_sensor();
+  const auto options = options_of(arguments, sensor);
+  if (!options) return status.fail(std::cerr, "replay", options.error());
+  if (const auto logging = start_logging(options->log); !logging) return status.fail(std::cerr, "replay", logging.error());
+  arguments.replay.control = std::make_shared<ReplayControl>();
+  const auto progress = std::make_shared<Progress>();
+  const ListenEnd end(arguments.listen);
+  builtin_library();
+  std::random_device device;
+  auto daemon = Daemon::start(*options, parts_of(arguments, progress), (static_cast<std::uint64_t>(device()) << 32U) | device());
+  if (!daemon) return status.fail(std::cerr, "replay", daemon.error());
+  Nanoseconds next_tick = monotonic_now();
+  while (!end.reached(progress->frames)) {
+    const ReplayControl::State state = arguments.replay.control->state();
+    if (state.ended && progress->frames >= state.frames) break;
+    if (monotonic_now() >= next_tick) {
+      (*daemon)->tick();
+      next_tick += std::chrono::seconds(1);
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  (*daemon)->stop();
+  if (arguments.listen.json) std::cout << nlohmann::ordered_json{{"file", arguments.file}, {"sensor", sensor}, {"frames", progress->frames.load()}, {"objects", progress->objects.load()}}.dump() << std::endl;
+  else std::cout << fmt::format("{}: {} frames, {:.1f} objects a frame\n", arguments.file, progress->frames.load(), static_cast<double>(progress->objects) / std::max<double>(1, static_cast<double>(progress->frames)));
+}
+
+}  // namespace
+
+void add_replay_command(CLI::App& app, ExitStatus& status) {
+  CLI::App& command = *app.add_subcommand("replay", "Processes and publishes a recording as gfpd would its camera: ours, or ROS 2 MCAP files with depth images");
+  const auto arguments = std::make_shared<ReplayArguments>();
+  ReplayOptions& replay_options = arguments->replay;
+  command.add_option("FILE", arguments->file, "MCAP file")->required();
+  command.add_option("--config", arguments->config, "As gfpd's; its sensors are replaced by the recording");
+  command.add_option("--set", arguments->settings, "Overrides one option: path.to.key=value; may be repeated")->take_all();
+  command.add_option("--speed", replay_options.speed, "Times the recording's own; 0: as fast as it is processed")->capture_default_str()->check(CLI::Range(0.0, 1000.0));
+  command.add_option("--start", replay_options.start_s, "Seconds of the recording to leave out")->check(CLI::NonNegativeNumber);
+  command.add_option("--step", replay_options.step, "Every so many-th frame")->capture_default_str()->check(CLI::Range(1, 1'000'000));
+  command.add_flag("--loop", replay_options.loop, "Starts over at the end");
+  command.add_option("--topic", replay_options.topic, "Of the depth images; by default the recording's own");
+  command.add_option("--color-topic", replay_options.color_topic, "Of colour images registered to depth, in files of others");
+  command.add_option("--name", arguments->name, "Of the sensor, in topics; by default as recorded");
+  command.add_option("--seconds", arguments->listen.seconds, "Ends after so many seconds")->check(CLI::NonNegativeNumber);
+  command.add_option("--count", arguments->listen.count, "Ends after so many frames");
+  command.add_flag("--json", arguments->listen.json, "A JSON object at the end");
+  command.callback([arguments, &status] { replay(*arguments, status); });
+}
+
+}  // namespace gfp

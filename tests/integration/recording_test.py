@@ -1,0 +1,110 @@
+#!/usr/bin/env python3
+"""Recording and replay with the real programs: gfpd records a virtual table, and so does gfp record beside it; both files fit, replay and
+compare equal to themselves; what a kill leaves is closed by the next start.
+
+Usage: recording_test.py GFPD GFP
+"""
+import json
+import os
+import pathlib
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+
+GFPD, GFP = sys.argv[1:3]
+DEADLINE_S = 200  # generous: the test ends with what it waits for
+CONFIG = """
+sensors:
+  - name: virtual
+    driver: synthetic
+    synthetic: {seed: 7, rate_hz: 5, table: {objects: 2}}
+recording: {mode: continuous, folder: RECORDINGS, min_free_mb: 1}
+"""
+
+
+def wait_for(what, condition):
+    end = time.monotonic() + DEADLINE_S
+    while time.monotonic() < end:
+        result = condition()
+        if result:
+            return result
+        time.sleep(0.05)
+    raise AssertionError(f"did not come within {DEADLINE_S} s: {what}")
+
+
+def gfp(*arguments, expected=0):
+    done = subprocess.run([GFP, *map(str, arguments)], capture_output=True, text=True, timeout=DEADLINE_S)
+    assert done.returncode == expected, f"gfp {arguments}: exit code {done.returncode}\n{done.stdout}\n{done.stderr}"
+    return done.stdout
+
+
+def lines(text):
+    return [json.loads(line) for line in text.splitlines()]
+
+
+def main():
+    with tempfile.TemporaryDirectory() as name:
+        folder = pathlib.Path(name)
+        os.environ["RUNTIME_DIRECTORY"] = str(folder / "run")
+        (folder / "run").mkdir()
+        recordings = folder / "recordings"
+        config = folder / "gfpd.yaml"
+        config.write_text(CONFIG.replace("RECORDINGS", str(recordings)))
+
+        daemon = subprocess.Popen([GFPD, "--config", config])
+        try:
+            first = folder / "first.mcap"
+            summary = lines(gfp("record", first, "--count", 6, "--seconds", DEADLINE_S, "--json"))[0]
+            assert summary["frames"] >= 1 and summary["scenes"] >= 1 and summary["corrupt"] == 0, summary
+            wait_for("a second of recording", lambda: any(p.stat().st_size > 1_000_000 for p in recordings.glob("*.active")))
+            daemon.send_signal(signal.SIGKILL)
+            daemon.wait()
+            assert list(recordings.glob("*.mcap.active")) and not list(recordings.glob("*.mcap"))
+
+            daemon = subprocess.Popen([GFPD, "--config", config])
+            wait_for("the killed recording to be closed", lambda: list(recordings.glob("*.mcap")))
+            killed = next(recordings.glob("*.mcap"))
+            wait_for("a second recording", lambda: any(p.stat().st_size > 1_000_000 for p in recordings.glob("*.active")))
+            daemon.send_signal(signal.SIGTERM)
+            assert daemon.wait(timeout=DEADLINE_S) == 0
+        finally:
+            daemon.kill()
+        assert len(list(recordings.glob("*.mcap"))) == 2 and not list(recordings.glob("*.active"))
+
+        for file in [first, *recordings.glob("*.mcap")]:
+            assert lines(gfp("repair", file, "--json"))[0]["outcome"] == "sound", file
+            assert lines(gfp("diff", file, file, "--json"))[0]["differences"] == []
+
+        # The recording fits to the same objects every time, and gfp replay publishes every frame of it.
+        fits = [folder / "a.jsonl", folder / "b.jsonl"]
+        for fit in fits:
+            fit.write_text(gfp("fit", first, "--json"))
+        gfp("diff", *fits)
+        frames = lines(fits[0].read_text())
+        assert len(frames) == summary["frames"] and frames[0]["sensor"] == "virtual" and any(frame["objects"] for frame in frames)
+        played = lines(gfp("replay", first, "--speed", 0, "--json", "--set", "log.level=off"))[0]
+        assert played["frames"] == summary["frames"] and played["sensor"] == "virtual", played
+
+        # An object that moved by 5 mm is a difference, and diff says which and by how much.
+        index = next(i for i, frame in enumerate(frames) if frame["objects"])
+        frames[index]["objects"][0]["T_camera_object"][0][3] += 0.005
+        moved = folder / "moved.jsonl"
+        moved.write_text("".join(json.dumps(frame) + "\n" for frame in frames))
+        found = lines(gfp("diff", fits[0], moved, "--json", expected=1))[0]["differences"]
+        assert [d["what"] for d in found] == ["position"] and abs(found[0]["delta"] - 0.005) < 1e-9, found
+        gfp("diff", fits[0], moved, "--position", 0.01)
+        gfp("diff", fits[0], killed, "--no-grasps", expected=1)  # other frames
+
+        # Cut in the middle: repaired in place, and what is left is equal.
+        cut = folder / "cut.mcap"
+        cut.write_bytes(first.read_bytes()[: first.stat().st_size * 2 // 3])
+        assert lines(gfp("repair", cut, "--json"))[0]["outcome"] == "closed"
+        assert all(d["what"] == "frame" for d in lines(gfp("diff", first, cut, "--json", expected=1))[0]["differences"])
+        gfp("repair", folder / "missing.mcap", expected=66)
+        gfp("replay", config, expected=65)
+        print("recorded, killed, recovered, replayed, compared")
+
+
+main()

@@ -1,0 +1,243 @@
+// Kills, rotten bits and refused writes of recordings, in great numbers. The ledger has a line for every block of trials:
+// {"kind": "kill", "first": 0, "count": 20, "lost_messages_max": 31, ...}; a run goes on behind the last one and ends at the first failure.
+#include <sys/mman.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+
+#include <atomic>
+#include <csignal>
+#include <fstream>
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+#include "gfp/core/time.hpp"
+#include "gfp/recording/recording_series.hpp"
+#include "gfp/recording/repair.hpp"
+#include "recording/sample_recording.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace gfp {
+namespace {
+
+using nlohmann::ordered_json;
+
+constexpr std::uint32_t kSamples = 3000;
+
+/// What a trial found; `failure` is empty where all is as promised.
+struct Trial {
+  std::string failure;
+  std::map<std::string, std::uint64_t> largest;  ///< Of what is counted, the largest of a block goes into the ledger.
+};
+
+const McapChannelSpec kSpecs[3] = {{"/one/", "test", "a", "text", std::string(300, 'a'), {}}, {"/two/", "test", "b", "text", "b", {}}, {"/three/", "test", "c", "text", "c", {}}};
+
+/// All messages of the recordings of a folder; a message that is other than it was is a failure.
+std::map<std::uint32_t, bool> read_folder(const std::filesystem::path& folder, std::string& failure) {
+  std::map<std::uint32_t, bool> found;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    if (entry.path().extension() != ".mcap") continue;
+    auto reader = McapReader::open(entry.path());
+    if (!reader || !reader->has_index()) {
+      failure = entry.path().string() + " is not readable through its index";
+      continue;
+    }
+    for (const auto& [i, message] : test::all_messages(*reader)) {
+      if (message.data != test::sample_message(i % kSamples).data) failure = "message " + std::to_string(i) + " is damaged";
+      found[i] = true;
+    }
+  }
+  return found;
+}
+
+/// What the child tells of itself until it is killed.
+struct Shared {
+  std::atomic<std::uint64_t> handed{0};   ///< Messages that were given to the recording.
+  std::atomic<std::uint64_t> written{0};  ///< Messages whose chunk was handed to the system.
+};
+
+[[noreturn]] void record_until_killed(const std::filesystem::path& folder, Shared& shared) {
+  RecordingOptions options;
+  options.mode = "continuous";
+  options.folder = folder.string();
+  options.min_free_mb = 0;
+  options.max_file_s = 1;
+  options.max_file_mb = 1;  // so that some kills hit the end of a file
+  const auto storage = disk_storage();
+  RecordingSeries series(options, *storage);
+  for (std::uint32_t i = 0;; ++i) {
+    McapMessage message = test::as_message(test::sample_message(i % kSamples), i);
+    message.log_time_ns = 1'000'000'000ULL + 1'000'000ULL * i;
+    series.put(kSpecs[i % 3], message, monotonic_now());
+    series.tick(monotonic_now());
+    shared.handed = i + 1;
+    shared.written = series.status().messages;
+  }
+}
+
+/// SIGKILL after a random time: what was written is there, and nothing else is wrong.
+Trial kill_trial(std::uint64_t seed) {
+  const test::TemporaryFolder folder;
+  auto* shared = new (mmap(nullptr, sizeof(Shared), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0)) Shared;
+  const pid_t child = fork();
+  if (child == 0) record_until_killed(folder / "r", *shared);
+  Random random(seed);
+  while (shared->handed == 0) usleep(100);
+  usleep(static_cast<useconds_t>(random.below(120'000)));
+  kill(child, SIGKILL);
+  waitpid(child, nullptr, 0);
+  Trial trial;
+  std::filesystem::create_directories(folder / "r");
+  recover_recordings(folder / "r", "gfp");
+  const auto found = read_folder(folder / "r", trial.failure);
+  if (found.size() < shared->written) trial.failure = std::to_string(shared->written - found.size()) + " written messages are gone";
+  trial.largest = {{"messages_max", found.size()}, {"lost_messages_max", shared->handed - std::min<std::uint64_t>(shared->handed, found.size())}};
+  munmap(shared, sizeof(Shared));
+  return trial;
+}
+
+struct Sample {
+  std::string bytes;
+  std::vector<std::pair<std::uint64_t, std::uint64_t>> chunks;       ///< Bytes [begin, end).
+  std::vector<std::vector<std::uint32_t>> messages;                  ///< Of each chunk.
+};
+
+Sample make_sample() {
+  Sample sample{test::sample_file(300, {16'384, 200'000'000, 1}), {}, {}};
+  const auto source = source_of(sample.bytes);
+  const McapScan scan = scan_mcap(*source).value();
+  for (const McapScan::Chunk& chunk : scan.chunks) sample.chunks.emplace_back(chunk.info.offset, chunk.info.offset + chunk.info.length + chunk.info.index_length);
+  sample.messages.resize(sample.chunks.size());
+  auto reader = McapReader::open(source_of(sample.bytes), "sample").value();
+  const auto refs = reader.messages(test::any_channel).value();
+  for (const McapMessageRef& ref : refs) sample.messages[ref.chunk].push_back(reader.read(ref)->sequence);
+  return sample;
+}
+
+/// One bit: at most the messages of its chunk are gone.
+Trial flip_trial(std::uint64_t seed) {
+  static const Sample kSample = make_sample();
+  Random random(seed);
+  const auto at = static_cast<std::size_t>(random.next() % kSample.bytes.size());
+  std::string bytes = kSample.bytes;
+  bytes[at] = static_cast<char>(bytes[at] ^ (1 << random.below(8)));
+  const auto found = test::all_messages(bytes);
+  Trial trial;
+  for (const auto& [i, message] : found)
+    if (!(message == test::sample_message(i))) trial.failure = "message " + std::to_string(i) + " is damaged";
+  std::uint64_t lost = 0;
+  for (std::size_t chunk = 0; chunk < kSample.chunks.size(); ++chunk) {
+    const bool is_hit = at >= kSample.chunks[chunk].first && at < kSample.chunks[chunk].second;
+    for (const std::uint32_t i : kSample.messages[chunk]) {
+      if (found.contains(i)) continue;
+      ++lost;
+      if (!is_hit) trial.failure = "message " + std::to_string(i) + " of a sound chunk is gone";
+    }
+  }
+  if (!trial.failure.empty()) trial.failure += ", byte " + std::to_string(at);
+  trial.largest = {{"lost_messages_max", lost}};
+  return trial;
+}
+
+/// A disk in memory whose write number `fail_at` (and a few behind it) is refused.
+class FailingStorage final : public RecordingStorage {
+ public:
+  explicit FailingStorage(std::size_t from, std::size_t until) : from_(from), until_(until) {}
+  std::vector<std::shared_ptr<test::MemoryFile::State>> files;
+
+  Result<std::unique_ptr<ByteFile>> create(const std::filesystem::path&) override {
+    const std::size_t writes = files.empty() ? 0 : files.back()->writes;
+    files.push_back(std::make_shared<test::MemoryFile::State>());
+    files.back()->writes = writes;
+    files.back()->fail_from = from_;
+    files.back()->fail_until = until_;
+    return std::unique_ptr<ByteFile>(std::make_unique<test::MemoryFile>(files.back()));
+  }
+  Result<void> rename(const std::filesystem::path&, const std::filesystem::path&) override { return {}; }
+  Result<void> remove(const std::filesystem::path&) override { return {}; }
+  std::vector<std::filesystem::path> closed_files(const std::filesystem::path&, const std::string&) override { return {}; }
+  Result<std::uint64_t> free_bytes(const std::filesystem::path&) override { return 1ULL << 40U; }
+
+ private:
+  std::size_t from_, until_;
+};
+
+/// Write `number` + 1 is refused: every message is in a file that is right, or counted as lost.
+Trial write_trial(std::uint64_t number) {
+  FailingStorage storage(number + 1, number + 2);
+  RecordingOptions options;
+  options.mode = "continuous";
+  options.max_file_mb = 1;
+  RecordingSeries series(options, storage);
+  Nanoseconds now{};
+  constexpr std::uint32_t kMessages = 11'000;  // 20 a chunk: 550 writes and the ends of files
+  for (std::uint32_t i = 0; i < kMessages; ++i) {
+    McapMessage message = test::as_message(test::sample_message(i % kSamples), i);
+    message.log_time_ns = 1'000'000'000ULL + 10'000'000ULL * i;
+    message.data = message.data.substr(0, 100);
+    series.put(kSpecs[i % 3], message, now += Nanoseconds(10'000'000));
+    series.tick(now);
+  }
+  series.close();
+  Trial trial;
+  std::uint64_t found = 0;
+  for (const auto& file : storage.files) {
+    if (file->bytes.size() < 100) continue;  // it could not even be begun
+    for (const auto& [i, message] : test::all_messages(file->bytes)) {
+      if (message.data != test::sample_message(i % kSamples).data.substr(0, 100)) trial.failure = "message " + std::to_string(i) + " is damaged";
+      ++found;
+    }
+  }
+  if (found + series.status().lost_messages != kMessages) trial.failure = "of " + std::to_string(kMessages) + " messages " + std::to_string(found) + " are there and " + std::to_string(series.status().lost_messages) + " counted as lost";
+  if (series.status().write_errors == 0) trial.failure = "the refused write was not counted";
+  if (series.status().lost_messages > 21) trial.failure = std::to_string(series.status().lost_messages) + " messages lost by one write";
+  trial.largest = {{"lost_messages_max", series.status().lost_messages}};
+  return trial;
+}
+
+std::uint64_t done_in(const std::string& ledger, const std::string& kind) {
+  std::ifstream in(ledger);
+  std::uint64_t done = 0;
+  for (std::string line; std::getline(in, line);) {
+    const auto entry = ordered_json::parse(line, nullptr, false);
+    if (entry.is_object() && entry.value("kind", "") == kind && entry.value("failure", "").empty()) done += entry.value("count", std::uint64_t{0});
+  }
+  return done;
+}
+
+bool run_kind(const std::string& ledger, const std::string& kind, std::uint64_t wanted, Trial (*trial_of)(std::uint64_t)) {
+  constexpr std::uint64_t kBlock = 20;
+  for (std::uint64_t first = done_in(ledger, kind); first < wanted; first += kBlock) {
+    const std::uint64_t count = std::min(kBlock, wanted - first);
+    ordered_json entry = {{"kind", kind}, {"first", first}, {"count", count}};
+    std::string failure;
+    for (std::uint64_t i = first; i < first + count && failure.empty(); ++i) {
+      const Trial trial = trial_of(i);
+      if (!trial.failure.empty()) failure = kind + " " + std::to_string(i) + ": " + trial.failure;
+      for (const auto& [name, value] : trial.largest) entry[name] = std::max(entry.value(name, std::uint64_t{0}), value);
+    }
+    if (!failure.empty()) entry["failure"] = failure;
+    std::ofstream(ledger, std::ios::app) << entry.dump() << std::endl;
+    if (!failure.empty()) return std::cerr << failure << "\n", false;
+  }
+  std::cout << kind << ": " << done_in(ledger, kind) << " as promised\n";
+  return true;
+}
+
+}  // namespace
+}  // namespace gfp
+
+int main(int argc, char** argv) {
+  std::string ledger;
+  std::uint64_t kills = 0, flips = 0, writes = 0;
+  CLI::App app{"Kills, rotten bits and refused writes of recordings", "gfp_recording_soak"};
+  app.add_option("LEDGER", ledger, "Where results go, and where a run goes on")->required();
+  app.add_option("--kills", kills);
+  app.add_option("--flips", flips);
+  app.add_option("--writes", writes);
+  CLI11_PARSE(app, argc, argv);
+  const bool sound = gfp::run_kind(ledger, "kill", kills, gfp::kill_trial) && gfp::run_kind(ledger, "flip", flips, gfp::flip_trial) &&
+                     gfp::run_kind(ledger, "write", writes, gfp::write_trial);
+  return sound ? 0 : 1;
+}
