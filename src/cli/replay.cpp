@@ -1,10 +1,13 @@
 // gfp replay FILE: a gfpd whose camera is a recording. Every frame is processed, in the recording's rhythm, and published.
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <atomic>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <random>
+#include <thread>
 
 #include "app/builtin_library.hpp"
 #include "cli/commands.hpp"

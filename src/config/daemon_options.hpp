@@ -80,8 +80,8 @@ struct DaemonOptions {
   PublishOptions publish;
   ViewOptions view;
   RobotOptions robot;
-  RecordingOptions recording;
   LogOptions log;
+  RecordingOptions recording;
   PipelineOptions pipeline;
 };
 
@@ -94,8 +94,8 @@ void visit_fields(DaemonOptions& o, Visitor&& field) {
   field.section("publish", o.publish);
   field.section("view", o.view);
   field.section("robot", o.robot);
-  field.section("recording", o.recording);
   field.section("log", o.log);
+  field.section("recording", o.recording);
   field.section("pipeline", o.pipeline);
 }
 

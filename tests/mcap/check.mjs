@@ -29,7 +29,7 @@ const checks = {
     assert(["16UC1", "rgb8"].includes(m.encoding));
     assert.equal(m.data.length, m.step * m.height);
     assert.equal(m.step, m.width * (m.encoding === "rgb8" ? 3 : 2));
-    assert.match(m.frameId ?? m.frame_id, /_optical$/);
+    assert.match(m.frame_id, /_optical$/);
   },
   "foxglove.CameraCalibration": (m) => {
     assert.equal(m.K.length, 9);
@@ -46,8 +46,8 @@ const checks = {
       assert(Math.abs(q.x ** 2 + q.y ** 2 + q.z ** 2 + q.w ** 2 - 1) < 1e-9);
     }
   },
-  "foxglove.FrameTransforms": (m) => assert.equal((m.transforms[0].parentFrameId ?? m.transforms[0].parent_frame_id), "world"),
-  "gfp.v1.FrameInfo": (m) => assert(m.depthScaleM > 0 && m.camera.camera.fx > 0),
+  "foxglove.FrameTransforms": (m) => assert.equal((m.transforms[0].parent_frame_id), "world"),
+  "gfp.v1.FrameInfo": (m) => assert(m.depth_scale_m > 0 && m.camera.camera.fx > 0),
   "gfp.v1.Topology": (m) => assert.equal(m.triangles.length % 12, 0),
   "gfp.v1.Scene": (m) => {
     for (const object of m.objects) assert.equal(object.vertices.positions.length, 6 * object.vertices.count, "int16 x y z");

@@ -9,7 +9,7 @@ for (const schema of Object.values(foxgloveMessageSchemas)) {
   const enums = Object.values(foxgloveEnumSchemas).filter((candidate) => candidate.parentSchemaName === schema.name);
   protobuf.parse(generateProto(schema, enums), theirs, { keepCase: true });
 }
-for (const [name, fields] of Object.entries({ Timestamp: 0, Duration: 0 })) theirs.define("google.protobuf").add(new protobuf.Type(name));
+for (const name of ["Timestamp", "Duration"]) theirs.define("google.protobuf").add(new protobuf.Type(name));
 theirs.resolveAll();
 
 const canonical = (name) => name.replace(/_/g, "").toLowerCase();
@@ -26,7 +26,7 @@ function compare(type) {
   assert.deepEqual(shape(type), shape(theirs.lookupType(type.fullName)), type.fullName);
   for (const field of type.fieldsArray) {
     if (field.resolvedType instanceof protobuf.Type) compare(field.resolvedType);
-    if (field.resolvedType instanceof protobuf.Enum) assert.deepEqual(field.resolvedType.values, theirs.lookupEnum(field.resolvedType.fullName).values, field.resolvedType.fullName);
+    if (field.resolvedType instanceof protobuf.Enum) assert.deepEqual({ ...field.resolvedType.values }, { ...theirs.lookupEnum(field.resolvedType.fullName).values }, field.resolvedType.fullName);
   }
 }
 for (const schema of schemas.values()) if (schema.name.startsWith("foxglove.")) compare(typeOf(schema));
