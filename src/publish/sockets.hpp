@@ -34,7 +34,7 @@ struct BoundSocket {
 /// What holds for all of the daemon's sockets.
 struct SocketOptions {
   int high_water_mark = 1000;          ///< Messages that wait for one slow peer.
-  std::int64_t max_message_bytes = 0;  ///< A peer that sends more is not one of ours: it is cut off before it is read.
+  std::int64_t max_message_bytes = -1; ///< A peer that sends more is not one of ours: it is cut off before it is read. -1: no limit.
   const CurveKey* curve_key = nullptr; ///< tcp endpoints are encrypted with it, and their peers have to pass the KeyGate.
 };
 
