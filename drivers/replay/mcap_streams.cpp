@@ -139,7 +139,7 @@ Result<LoadedFrame> McapStreams::load(std::size_t index) {
   auto loaded = is_ours_ ? load_ours(index) : load_theirs(index);
   if (!loaded) return loaded;
   loaded->report.file = file_;
-  loaded->frame.sensor = options_.sensor;
+  loaded->frame.sensor = options_.sensor.empty() ? recorded_sensor_ : options_.sensor;
   return loaded;
 }
 

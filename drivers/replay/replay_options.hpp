@@ -12,7 +12,7 @@ namespace gfp {
 class ReplayControl;
 
 struct ReplayOptions {
-  std::string sensor = "replay";        ///< Name of the source, as in topics.
+  std::string sensor = "replay";        ///< Name of the source, as in topics; empty: of an MCAP recording, the name that it was recorded under.
   double rate_hz = 30;                  ///< Frames a second of files and folders; 0: as fast as they are taken.
   bool loop = false;                    ///< Starts over at the end, stamps go on rising.
   int step = 1;                         ///< Every so many-th frame is played.

@@ -30,11 +30,8 @@ Result<Input> open_oni(const std::string& name, [[maybe_unused]] const InputOpti
 #endif
 }
 
-/// With the sensor's name as it was recorded.
 Result<Input> open_recording(const std::string& name, ReplayOptions options) {
-  auto streams = McapStreams::open(name, options);
-  if (!streams) return tl::unexpected(streams.error());
-  options.sensor = streams->recorded_sensor();
+  options.sensor.clear();  // as it was recorded
   auto source = open_mcap(name, options);
   if (!source) return tl::unexpected(source.error());
   if (auto opened = (*source)->open(); !opened) return tl::unexpected(opened.error());

@@ -3,7 +3,8 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+
+#include "gfp/core/union_find.hpp"
 
 namespace gfp {
 namespace {
@@ -32,23 +33,6 @@ std::vector<HalfEdge> sorted_half_edges(const TriangleMesh& mesh) {
   return edges;
 }
 
-class UnionFind {
- public:
-  explicit UnionFind(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0); }
-  int find(int i) {
-    while (parent_[static_cast<std::size_t>(i)] != i) {
-      auto& parent = parent_[static_cast<std::size_t>(i)];
-      parent = parent_[static_cast<std::size_t>(parent)];
-      i = parent;
-    }
-    return i;
-  }
-  void join(int a, int b) { parent_[static_cast<std::size_t>(find(a))] = find(b); }
-
- private:
-  std::vector<int> parent_;
-};
-
 /// Vertices whose triangles do not form one fan: the triangles about a vertex, joined over shared edges, must be one group.
 int count_nonmanifold_vertices(const TriangleMesh& mesh, const std::vector<HalfEdge>& edges) {
   UnionFind corners(3 * mesh.triangles.size());
@@ -64,7 +48,7 @@ int count_nonmanifold_vertices(const TriangleMesh& mesh, const std::vector<HalfE
   }
   std::vector<int> fans(mesh.vertices.size(), 0);
   for (std::size_t c = 0; c < 3 * mesh.triangles.size(); ++c)
-    if (corners.find(static_cast<int>(c)) == static_cast<int>(c)) ++fans[static_cast<std::size_t>(mesh.triangles[c / 3][c % 3])];
+    if (corners.root(static_cast<int>(c)) == static_cast<int>(c)) ++fans[static_cast<std::size_t>(mesh.triangles[c / 3][c % 3])];
   return static_cast<int>(std::count_if(fans.begin(), fans.end(), [](int n) { return n > 1; }));
 }
 
@@ -101,7 +85,7 @@ MeshTopology examine_topology(const TriangleMesh& mesh) {
   for (std::size_t v = 0; v < used.size(); ++v) {
     if (!used[v]) continue;
     ++used_count;
-    if (pieces.find(static_cast<int>(v)) == static_cast<int>(v)) ++result.components;
+    if (pieces.root(static_cast<int>(v)) == static_cast<int>(v)) ++result.components;
   }
   result.euler_characteristic = used_count - edge_count + static_cast<int>(mesh.triangles.size());
   result.closed = !mesh.triangles.empty() && result.boundary_edges == 0 && result.nonmanifold_edges == 0 && result.nonmanifold_vertices == 0;
@@ -208,13 +192,14 @@ double mean_edge_length(const TriangleMesh& mesh) {
   return adjacency.indices.empty() ? 0 : sum / static_cast<double>(adjacency.indices.size());
 }
 
-TriangleMesh transformed(const TriangleMesh& mesh, const Transform& T_to_from) {
-  TriangleMesh result;
-  result.triangles = mesh.triangles;
-  result.vertices.reserve(mesh.vertices.size());
-  for (const auto& v : mesh.vertices) result.vertices.push_back(T_to_from * v);
+std::vector<Vector3d> transformed(const std::vector<Vector3d>& points, const Transform& T_to_from) {
+  std::vector<Vector3d> result;
+  result.reserve(points.size());
+  for (const auto& p : points) result.push_back(T_to_from * p);
   return result;
 }
+
+TriangleMesh transformed(const TriangleMesh& mesh, const Transform& T_to_from) { return {transformed(mesh.vertices, T_to_from), mesh.triangles}; }
 
 void append(TriangleMesh& mesh, const TriangleMesh& more) {
   const auto offset = static_cast<std::int32_t>(mesh.vertices.size());

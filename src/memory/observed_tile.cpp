@@ -10,23 +10,6 @@ constexpr double kLeastCosine = 0.2;  ///< Normals of grazing pixels are too unc
 
 std::size_t at(int index) { return static_cast<std::size_t>(index); }
 
-/// Beside a silhouette cell the sensor saw something farther, or the table; an occluder or a hole says nothing.
-bool sees_past(const ObservedTile& tile, int cell, int neighbour) {
-  if (tile.evidence[at(neighbour)] == Evidence::kObject) return false;
-  const float behind = tile.depth[at(neighbour)];
-  return behind > tile.depth[at(cell)] - 0.005F;  // an occluder would be nearer; no reading is 0
-}
-
-void mark_outline(ObservedTile& tile) {
-  tile.outline.assign(at(tile.cells()), 0);
-  for (const int cell : tile.object_cells) {
-    const int i = cell % tile.width, j = cell / tile.width;
-    const bool seen_past = (i > 0 && sees_past(tile, cell, cell - 1)) || (i + 1 < tile.width && sees_past(tile, cell, cell + 1)) ||
-                           (j > 0 && sees_past(tile, cell, cell - tile.width)) || (j + 1 < tile.height && sees_past(tile, cell, cell + tile.width));
-    tile.outline[at(cell)] = seen_past ? 1 : 0;
-  }
-}
-
 }  // namespace
 
 std::vector<std::int32_t> nearest_seed(const std::vector<std::uint8_t>& seed, int width, int height) {
@@ -108,7 +91,6 @@ ObservedTile observe(const ObjectView& view, int target_cells) {
     const double cosine = std::abs(tile.normals[at(cell)].dot(tile.rays[at(cell)]));
     if (tile.normals[at(cell)].squaredNorm() > 0.5) tile.cosine[at(cell)] = static_cast<float>(std::max(kLeastCosine, cosine));
   }
-  mark_outline(tile);
   return tile;
 }
 

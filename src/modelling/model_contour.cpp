@@ -36,13 +36,6 @@ struct Contour {
   bool sound = false;  ///< Looked at, and neither folds nor crosses itself.
 };
 
-std::vector<Vector3d> in_frame(const Transform& T_to_from, const std::vector<Vector3d>& points) {
-  std::vector<Vector3d> result;
-  result.reserve(points.size());
-  for (const auto& p : points) result.push_back(T_to_from * p);
-  return result;
-}
-
 std::vector<Vector3d> displaced(const std::vector<Vector3d>& rest, const Eigen::MatrixX3d& u, double share) {
   std::vector<Vector3d> result(rest);
   for (std::size_t i = 0; i < rest.size(); ++i) result[i] += share * u.row(static_cast<Eigen::Index>(i)).transpose();
@@ -74,7 +67,7 @@ void run_contour(const ObjectView& view, const Primitive& primitive, const Model
     const auto normals = vertex_normals({contour.vertices, triangles});
     std::vector<Vector3d> normals_camera;
     for (const auto& n : normals) normals_camera.emplace_back(view.T_camera_support.linear() * n);
-    contour.data = surface_targets(view, in_frame(view.T_camera_support, contour.vertices), normals_camera, triangles, gate);
+    contour.data = surface_targets(view, transformed(contour.vertices, view.T_camera_support), normals_camera, triangles, gate);
     SurfaceTargets targets = contour.data;
     // Targets count from where the vertex is now; the solver's count from rest.
     for (std::size_t i = 0; i < targets.distance_m.size(); ++i)
@@ -119,7 +112,7 @@ Contour model_shape(const ObjectView& view, const Placement& placement, const Tr
     modes = placement.modes;
     for (auto& b : modes) b *= share;
     contour = {};
-    contour.rest = in_frame(T_support_object, shape(primitive, placement.size_m, modes));
+    contour.rest = transformed(shape(primitive, placement.size_m, modes), T_support_object);
     settle_on_support(view, contour.rest);
     contour.vertices = contour.rest;
     run_contour(view, primitive, options, contour);
@@ -138,13 +131,13 @@ FittedModel model_contour(const ObjectView& view, const Placement& placement, co
   FittedModel model = model_of_placement(placement, "gfp_robust");
   Contour contour = model_shape(view, placement, T_support_object, options, model.modes);
 
-  model.vertices = in_frame(T_support_object.inverse(), contour.vertices);
+  model.vertices = transformed(contour.vertices, T_support_object.inverse());
   model.energies = std::move(contour.energies);
   model.iterations = contour.iterations;
   if (contour.sound) model.self_intersections = 0;
   model.converged = contour.settled && placement.converged;
 
-  const auto vertices_camera = in_frame(view.T_camera_support, contour.vertices);
+  const auto vertices_camera = transformed(contour.vertices, view.T_camera_support);
   model.evidence = evaluate_fit(view, vertices_camera, triangles, model.states);
   for (std::size_t i = 0; i < model.states.size(); ++i) {
     if (primitive.topology->types[i] == PointType::kControl) model.states[i] |= kVertexControl;

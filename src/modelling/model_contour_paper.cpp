@@ -48,7 +48,7 @@ Sphere sphere_about(const std::vector<Vector3f>& points) {
 /// What every contour's model has in common. `vertices` of the model are set by the caller.
 void describe(const ObjectView& view, const ContourStart& start, ContourEnd end, FittedModel& model, ContourTrace* trace) {
   const Transform T_object_camera = model.T_camera_object.inverse();
-  for (const auto& v : end.vertices) model.vertices.push_back(T_object_camera * v);
+  model.vertices = transformed(end.vertices, T_object_camera);
   model.evidence = evaluate_fit(view, end.vertices, model.topology->triangles, model.states);
   for (std::size_t i = 0; i < model.states.size(); ++i) {
     if (start.is_control[i] != 0) model.states[i] |= kVertexControl;

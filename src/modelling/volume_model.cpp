@@ -69,11 +69,10 @@ FittedModel volume_model(const ObjectView& view, const SupportedBody& body) {
   model.method = body.method;
   model.class_name = "unknown";
   model.topology = body.topology;
-  model.vertices.reserve(body.vertices_support.size());
-  for (const auto& v : body.vertices_support) model.vertices.push_back(T_object_support * v);
+  model.vertices = transformed(body.vertices_support, T_object_support);
   model.T_camera_object = view.T_camera_support * Eigen::Translation3d(0, 0, lift) * T_support_object;
   model.size_m = bounds(model.vertices).size();
-  const auto vertices_camera = model.mesh_camera().vertices;
+  const auto vertices_camera = model.vertices_camera();
   model.evidence = evaluate_fit(view, vertices_camera, model.topology->triangles, model.states);
   model.sigma_m = sigma_by_distance(model.vertices, model.states, body.surface_sigma_m);
   model.pose_covariance = pose_covariance(body, T_support_object);

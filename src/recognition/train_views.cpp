@@ -48,8 +48,7 @@ RenderedView render_view(const Primitive& primitive, const StablePose& pose, Ran
   T_camera_support.linear().row(1) = forward.cross(right);
   T_camera_support.linear().row(2) = forward;
   T_camera_support.translation() = -T_camera_support.linear() * (target - distance * forward);
-  std::vector<Vector3d> vertices_camera;
-  for (const auto& v : mesh.vertices) vertices_camera.push_back(T_camera_support * v);
+  const std::vector<Vector3d> vertices_camera = transformed(mesh.vertices, T_camera_support);
 
   const CameraModel camera = default_kinect_camera();
   PixelRect rect{1 << 20, 1 << 20, -(1 << 20), -(1 << 20)};

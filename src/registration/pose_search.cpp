@@ -25,43 +25,25 @@ std::pair<double, double> quantile_range(std::vector<double>& values, double sha
   return {low_value, values[static_cast<std::size_t>(high)]};
 }
 
-/// Extent of the rotated, scaled mean shape along `direction`, and how it depends on the logarithm of each axis' size.
+/// Extent of the rotated, scaled mean shape about its origin, along a direction, and how it depends on the logarithm of each axis' size.
 struct ModelExtent {
-  double length_m = 0;
+  double low_m = 0, high_m = 0;
   Vector3d weights = Vector3d::Zero();  ///< d log(length) / d log(size), sums to 1.
+
+  double length_m() const { return high_m - low_m; }
 };
 
 ModelExtent model_extent(const Primitive& primitive, const Eigen::Matrix3d& rotation, const Vector3d& size, const Vector3d& direction) {
   const Vector3d scaled = size.cwiseProduct(rotation.transpose() * direction);
-  double low = 1e300, high = -1e300;
+  ModelExtent extent{1e300, -1e300};
   const Vector3d *lowest = nullptr, *highest = nullptr;
   for (const auto& p : primitive.mean) {
     const double value = scaled.dot(p);
-    if (value < low) { low = value; lowest = &p; }
-    if (value > high) { high = value; highest = &p; }
+    if (value < extent.low_m) { extent.low_m = value; lowest = &p; }
+    if (value > extent.high_m) { extent.high_m = value; highest = &p; }
   }
-  ModelExtent extent{high - low, Vector3d::Zero()};
-  if (extent.length_m > 0) extent.weights = scaled.cwiseProduct(*highest - *lowest) / extent.length_m;
+  if (extent.length_m() > 0) extent.weights = scaled.cwiseProduct(*highest - *lowest) / extent.length_m();
   return extent;
-}
-
-/// Of the rotated, scaled mean shape about its origin.
-double lowest_point(const Primitive& primitive, const Eigen::Matrix3d& rotation, const Vector3d& size) {
-  const Vector3d up = size.cwiseProduct(rotation.transpose() * Vector3d::UnitZ());
-  double lowest = 1e300;
-  for (const auto& p : primitive.mean) lowest = std::min(lowest, up.dot(p));
-  return lowest;
-}
-
-/// Half the extent of the rotated, scaled mean shape to either side of its origin, along `direction`.
-std::pair<double, double> reach_along(const Primitive& primitive, const Eigen::Matrix3d& rotation, const Vector3d& size, const Vector3d& direction) {
-  const Vector3d scaled = size.cwiseProduct(rotation.transpose() * direction);
-  double low = 1e300, high = -1e300;
-  for (const auto& p : primitive.mean) {
-    low = std::min(low, scaled.dot(p));
-    high = std::max(high, scaled.dot(p));
-  }
-  return {low, high};
 }
 
 PoseState initial_state(VisibleFit& fit, const ObservedExtent& extent, const Primitive& primitive, const Eigen::Matrix3d& rotation) {
@@ -71,27 +53,28 @@ PoseState initial_state(VisibleFit& fit, const ObservedExtent& extent, const Pri
     const Vector3d size = log_size.array().exp().matrix();
     const auto observe = [&](const Vector3d& direction, double length_m, double sigma) {
       const ModelExtent model = model_extent(primitive, rotation, size, direction);
-      if (model.length_m > 1e-6 && length_m > 1e-3)
-        belief.observe(model.weights, model.weights.dot(log_size) + std::log(length_m / model.length_m), sigma);
+      if (model.length_m() > 1e-6 && length_m > 1e-3)
+        belief.observe(model.weights, model.weights.dot(log_size) + std::log(length_m / model.length_m()), sigma);
     };
     observe(Vector3d::UnitZ(), extent.height_m, extent.height_sigma);
     // What is cut at a side is at least as wide as it is seen.
+    const auto expected_width_m = [&] { return model_extent(primitive, rotation, belief.mean().array().exp().matrix(), extent.lateral).length_m(); };
     const bool cut = extent.low_open || extent.high_open;
-    const Vector3d expected = belief.mean().array().exp().matrix();
-    if (!cut || model_extent(primitive, rotation, expected, extent.lateral).length_m < extent.width_m) observe(extent.lateral, extent.width_m, extent.width_sigma);
+    if (!cut || expected_width_m() < extent.width_m) observe(extent.lateral, extent.width_m, extent.width_sigma);
     log_size = belief.mean();
   }
+  const Vector3d size = log_size.array().exp().matrix();
   PoseState state;
   state.T_support_object.linear() = rotation;
   state.log_size = log_size;
   state.modes.setZero(static_cast<Eigen::Index>(primitive.modes.size()));
   state.T_support_object.translation() = extent.centroid;
-  state.T_support_object.translation().z() = -lowest_point(primitive, rotation, log_size.array().exp().matrix());
+  state.T_support_object.translation().z() = -model_extent(primitive, rotation, size, Vector3d::UnitZ()).low_m;
   fit.pose(state);
   state.T_support_object.translation().head<2>() += fit.visible_centroid_shift().head<2>();
   if (extent.low_open != extent.high_open) {  // the end that is seen says where it is, the readings how far away
-    const auto [low, high] = reach_along(primitive, rotation, log_size.array().exp().matrix(), extent.lateral);
-    const double there = extent.low_open ? extent.high_m - high : extent.low_m - low;
+    const ModelExtent model = model_extent(primitive, rotation, size, extent.lateral);
+    const double there = extent.low_open ? extent.high_m - model.high_m : extent.low_m - model.low_m;
     state.T_support_object.translation() += (there - extent.lateral.dot(state.T_support_object.translation())) * extent.lateral;
     fit.pose(state);
     state.T_support_object.translation().head<2>() += fit.overlap_shift().head<2>();

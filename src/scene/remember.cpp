@@ -102,7 +102,7 @@ bool stands_there(const Track& track, const std::string& sensor) { return track.
 std::vector<std::uint64_t> lost_ids(const SceneMemory& memory, const std::vector<ObjectView>& views, const std::string& sensor) {
   std::vector<std::uint64_t> lost;
   for (const Track& track : memory.tracks)
-    if (track.sensor == sensor && track.missed_frames == 0 && track.object && !seen(views, track.id)) lost.push_back(track.id);
+    if (stands_there(track, sensor) && !seen(views, track.id)) lost.push_back(track.id);
   return lost;
 }
 

@@ -3,36 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "gfp/core/union_find.hpp"
+
 namespace gfp {
 namespace {
 
 struct Run {
   std::int32_t begin, end;  // pixel indices of one row, half open
-};
-
-class UnionFind {
- public:
-  std::int32_t add() {
-    parent_.push_back(static_cast<std::int32_t>(parent_.size()));
-    return parent_.back();
-  }
-  std::int32_t root(std::int32_t a) {
-    while (parent_[static_cast<std::size_t>(a)] != a) {
-      auto& up = parent_[static_cast<std::size_t>(a)];
-      up = parent_[static_cast<std::size_t>(up)];
-      a = up;
-    }
-    return a;
-  }
-  // The lower index becomes the root: components are then numbered in the order of their first run.
-  void join(std::int32_t a, std::int32_t b) {
-    a = root(a);
-    b = root(b);
-    if (a != b) parent_[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
-  }
-
- private:
-  std::vector<std::int32_t> parent_;
 };
 
 class Joiner {

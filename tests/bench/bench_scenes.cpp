@@ -39,6 +39,22 @@ const std::vector<BenchScene>& scenes(Source source) {
 
 const std::vector<BenchScene>& scenes(const benchmark::State& state) { return scenes(static_cast<Source>(state.range(0))); }
 
+const std::vector<Frame>& standing_frames() {
+  static const std::vector<Frame> all = [] {
+    TableTopOptions options;
+    options.objects = 5;
+    const VirtualScene scene = table_top_scene(options, 7);
+    std::vector<Frame> made;
+    for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+      made.push_back(capture(scene, default_kinect_camera(), look_at_pose({0, 0, 0.05}, 0.9, 0.7, -1.57), {}, seed).frame);
+      made.back().sensor = "bench";
+      made.back().sequence = seed;
+    }
+    return made;
+  }();
+  return all;
+}
+
 bool has_real_frames() { return std::filesystem::exists(test::data_directory() / "scenes/osd_learn"); }
 
 void each_source(benchmark::internal::Benchmark* benchmark) {

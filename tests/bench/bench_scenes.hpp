@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "gfp/cloud/organized_cloud.hpp"
+#include "gfp/frame/frame.hpp"
 #include "segmentation/labelled_scene.hpp"
 
 namespace gfp::bench {
@@ -24,6 +25,9 @@ enum Source { kSynthetic = 0, kReal = 1 };
 /// $GFP_DATA_DIR; empty where they are absent.
 const std::vector<BenchScene>& scenes(Source source);
 const std::vector<BenchScene>& scenes(const benchmark::State& state);
+
+/// Twelve frames of one standing table with five objects, 640 x 480, each with its own Kinect noise; sequences from 1.
+const std::vector<Frame>& standing_frames();
 
 /// Asked while benchmarks are registered, when nothing else of the program may run yet.
 bool has_real_frames();

@@ -5,10 +5,9 @@
 #include <vector>
 
 #include "app/builtin_library.hpp"
+#include "bench/bench_scenes.hpp"
 #include "gfp/pipeline/process_frame.hpp"
 #include "gfp/recording/recording_series.hpp"
-#include "gfp/simulation/table_top_scene.hpp"
-#include "gfp/simulation/virtual_camera.hpp"
 #include "support/temporary_folder.hpp"
 #include "wire/recorded_messages.hpp"
 
@@ -20,21 +19,15 @@ struct Seen {
   Scene scene;
 };
 
-/// Frames of one standing scene, each with its own noise, and what the pipeline made of them.
+/// Frames of one standing scene, and what the pipeline made of them.
 const std::vector<Seen>& frames() {
   static const std::vector<Seen> all = [] {
-    TableTopOptions options;
-    options.objects = 5;
-    const VirtualScene scene = table_top_scene(options, 7);
     std::vector<Seen> made;
     SceneMemory memory;
-    for (std::uint64_t seed = 1; seed <= 12; ++seed) {
-      Frame frame = capture(scene, default_kinect_camera(), look_at_pose({0, 0, 0.05}, 0.9, 0.7, -1.57), {}, seed).frame;
-      frame.sensor = "bench";
-      frame.sequence = seed;
+    for (const Frame& frame : bench::standing_frames()) {
       PipelineResult result = process_frame(frame, memory, builtin_library());
       memory = std::move(result.memory);
-      made.push_back({std::move(frame), std::move(result.scene)});
+      made.push_back({frame, std::move(result.scene)});
     }
     return made;
   }();

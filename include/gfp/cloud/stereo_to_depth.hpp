@@ -52,7 +52,7 @@ struct DisparityImage {
 /// Matches a rectified pair: census of 24 neighbours, semi-global aggregation along five paths (Hirschmueller, PAMI 2008; left,
 /// right and the three from above), the right picture's own minimum as a check, an equiangular fit for the fraction of a pixel, small regions removed.
 /// Integers throughout: the same result on every machine. Errors: kInvalidArgument (empty, different sizes, options out of bounds).
-/// Cost: 640 x 480 x 64 disparities about 20 ms on one core with AVX2; memory half a kilobyte a column.
+/// Cost: 640 x 480 x 64 disparities about 40 ms on one core with AVX2; memory half a kilobyte a column.
 Result<DisparityImage> match_stereo(const Image<std::uint8_t>& left, const Image<std::uint8_t>& right, const StereoOptions& options = {});
 
 /// z = f B / (disparity - cx_offset), in units of 0.1 mm (of max_depth_m / 65535 where that is more); 0 where there is no match or it is too far.

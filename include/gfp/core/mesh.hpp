@@ -59,6 +59,7 @@ double mean_edge_length(const TriangleMesh& mesh);
 /// Cost: uniform grid, about 5 ms for 1200 triangles.
 int count_self_intersections(const TriangleMesh& mesh, int limit = 1 << 30);
 
+std::vector<Eigen::Vector3d> transformed(const std::vector<Eigen::Vector3d>& points, const Transform& T_to_from);
 TriangleMesh transformed(const TriangleMesh& mesh, const Transform& T_to_from);
 /// Puts one mesh's triangles behind another's.
 void append(TriangleMesh& mesh, const TriangleMesh& more);

@@ -25,7 +25,6 @@ struct ObservedTile {
   std::vector<float> cosine;                 ///< |normal . ray| at object cells, >= 0.2: turns depth differences into plane distances.
   std::vector<float> sigma_m;                ///< Of the reading along the ray.
   std::vector<std::int32_t> object_cells;    ///< Ascending.
-  std::vector<std::uint8_t> outline;         ///< 1 for an object cell on the object's own silhouette: beside it the sensor saw past the object.
 
   int cells() const { return width * height; }
   double pixel_m(int cell) const { return step * static_cast<double>(depth[static_cast<std::size_t>(cell)]) / camera.fx; }

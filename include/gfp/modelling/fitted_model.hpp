@@ -55,7 +55,8 @@ struct FittedModel {
   bool converged = false;
 
   TriangleMesh mesh_object() const { return {vertices, topology->triangles}; }
-  TriangleMesh mesh_camera() const { return transformed(mesh_object(), T_camera_object); }
+  std::vector<Eigen::Vector3d> vertices_camera() const { return transformed(vertices, T_camera_object); }
+  TriangleMesh mesh_camera() const { return {vertices_camera(), topology->triangles}; }
 };
 
 }  // namespace gfp
