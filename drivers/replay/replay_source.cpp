@@ -23,7 +23,7 @@ ReplaySource::ReplaySource(std::vector<ReplayEntry> entries, ReplayOptions optio
       stamped_(std::all_of(entries_.begin(), entries_.end(), [](const ReplayEntry& e) { return e.stamp.has_value(); })) {}
 
 SourceInfo ReplaySource::info() const {
-  return {"replay", "recording", entries_.front().depth.string(), options_.rate_hz, 0.0, 65.535, !options_.loop};
+  return {"replay", "recording", entries_.front().depth.string(), options_.rate_hz, 0.0, 65.535, !options_.loop, true};
 }
 
 Result<void> ReplaySource::open() {

@@ -43,7 +43,7 @@ SyntheticSource::SyntheticSource(SyntheticOptions options)
     : options_(std::move(options)), scene_(table_top_scene(options_.table, options_.seed)) {}
 
 SourceInfo SyntheticSource::info() const {
-  return {"synthetic", "virtual Kinect", std::to_string(options_.seed), options_.rate_hz, 0.4, 6.5, options_.frames > 0};
+  return {"synthetic", "virtual Kinect", std::to_string(options_.seed), options_.rate_hz, 0.4, 6.5, options_.frames > 0, options_.camera.noise_scale <= 0};
 }
 
 Result<void> SyntheticSource::open() {

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "app/isolated_source.hpp"
 #include "config/camera_file.hpp"
 #ifdef GFP_HAS_FREENECT
 #include "freenect/freenect_source.hpp"
@@ -66,9 +67,7 @@ Result<std::unique_ptr<FrameSource>> make_openni2(const SensorConfig& sensor) {
 }
 #endif
 
-}  // namespace
-
-Result<std::unique_ptr<FrameSource>> make_source(const SensorConfig& sensor) {
+Result<std::unique_ptr<FrameSource>> make_driver(const SensorConfig& sensor) {
   if (sensor.driver == "replay") return make_replay(sensor);
   if (sensor.driver == "synthetic") return make_synthetic(sensor);
 #ifdef GFP_HAS_FREENECT
@@ -78,6 +77,15 @@ Result<std::unique_ptr<FrameSource>> make_source(const SensorConfig& sensor) {
   if (sensor.driver == "openni2") return make_openni2(sensor);
 #endif
   return failure(ErrorCode::kUnsupported, fmt::format("sensor {}: driver = {}, which this build has not", sensor.name, sensor.driver));
+}
+
+}  // namespace
+
+Result<std::unique_ptr<FrameSource>> make_source(const SensorConfig& sensor) {
+  auto source = make_driver(sensor);
+  if (!source) return source;
+  if (sensor.isolation == "process") return make_isolated_source(sensor, (*source)->info());
+  return with_failure(std::move(*source), sensor.failure);
 }
 
 }  // namespace gfp

@@ -8,6 +8,7 @@
 #include "freenect/freenect_options.hpp"
 #include "gfp/core/error.hpp"
 #include "gfp/core/fields.hpp"
+#include "gfp/frame/failing_source.hpp"
 #include "gfp/frame/run_source.hpp"
 #include "gfp/pipeline/pipeline_options.hpp"
 #include "gfp/recording/recording_series.hpp"
@@ -26,7 +27,9 @@ struct SensorConfig {
   std::string input;                ///< File or folder that `replay` plays; of `freenect` a recorded folder instead of a
                                     ///< device; of `openni2` a device's URI or an .oni file.
   std::string camera;               ///< Camera file, or `fx,fy,cx,cy`; empty: what the driver knows by itself.
+  std::string isolation = "none";   ///< `process`: the driver runs in a process of its own, which may crash or hang.
   SourceOptions source;             ///< Timeouts and reconnection.
+  FailureOptions failure;           ///< On purpose, for drills.
   ReplayOptions replay;             ///< Of the driver of that name; its `sensor` and `camera` are the ones above.
   SyntheticOptions synthetic;       ///< Likewise.
   FreenectOptions freenect;         ///< Likewise; its `folder` is `input`.
@@ -39,7 +42,9 @@ void visit_fields(SensorConfig& o, Visitor&& field) {
   field("driver", o.driver, OneOf{{"synthetic", "replay", "freenect", "openni2"}});
   field("input", o.input);
   field("camera", o.camera);
+  field("isolation", o.isolation, OneOf{{"none", "process"}});
   field.section("source", o.source);
+  field.section("failure", o.failure);
   field.section("replay", o.replay);
   field.section("synthetic", o.synthetic);
   field.section("freenect", o.freenect);

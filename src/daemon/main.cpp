@@ -7,6 +7,7 @@
 #include <random>
 
 #include "app/builtin_library.hpp"
+#include "app/driver_channel.hpp"
 #include "app/make_source.hpp"
 #include "cli/exit_code.hpp"
 #include "daemon/daemon.hpp"
@@ -23,6 +24,7 @@ struct Arguments {
   std::string config;
   std::vector<std::string> settings;
   bool insecure = false;
+  bool driver_child = false;
 };
 
 gfp::Result<gfp::DaemonOptions> load(const Arguments& arguments) {
@@ -130,6 +132,7 @@ int main(int argc, char** argv) {
   app.add_option("--config", arguments.config, "Configuration file (YAML); see config/default.yaml for every option");
   app.add_option("--set", arguments.settings, "Overrides one option: path.to.key=value; may be repeated")->take_all();
   app.add_flag("--insecure", arguments.insecure, "Allows tcp endpoints, which are neither encrypted nor authenticated");
+  app.add_flag("--driver-child", arguments.driver_child, "For gfpd itself: be the process of one isolated driver")->group("");
   app.footer("SIGTERM and SIGINT end it after the last state was sent; SIGHUP reloads the configuration; SIGUSR1 makes a file of what a recording ring holds.");
   try {
     app.parse(argc, argv);
@@ -137,7 +140,7 @@ int main(int argc, char** argv) {
     return app.exit(error) == 0 ? gfp::kExitOk : gfp::kExitUsage;
   }
   try {
-    return run(arguments);
+    return arguments.driver_child ? gfp::run_driver_child() : run(arguments);
   } catch (const std::exception& error) {
     std::cerr << "gfpd: " << error.what() << " (a bug: please report it)\n";
     return gfp::kExitSoftware;

@@ -3,11 +3,25 @@
 #include <spdlog/spdlog.h>
 
 namespace gfp {
+namespace {
+
+constexpr Nanoseconds kHangMargin = std::chrono::milliseconds(500);  // beyond the timeout that a grab was given
+
+}  // namespace
+
+Result<Frame> WatchedSource::grab(std::chrono::milliseconds timeout) {
+  due_ns_ = (monotonic_now() + timeout + kHangMargin).count();
+  Result<Frame> frame = source_->grab(timeout);
+  due_ns_ = kNever;
+  return frame;
+}
+
+bool WatchedSource::hangs() const { return monotonic_now().count() > due_ns_; }
 
 SensorWorker::SensorWorker(SensorConfig config, std::unique_ptr<FrameSource> source, HandOver policy, FrameInbox& inbox, Publisher& publisher, Recorder* recorder)
     : config_(std::move(config)),
       source_(std::move(source)),
-      info_(source_->info()),
+      info_(source_.info()),
       inbox_(inbox),
       publisher_(publisher),
       recorder_(recorder),
@@ -24,7 +38,7 @@ void SensorWorker::request_stop() {
 }
 
 void SensorWorker::drive(const std::stop_token& stop) {
-  const SourceStatus last = run_source(*source_, slot_, config_.source, stop, [this](const SourceStatus& status) { changed(status); });
+  const SourceStatus last = run_source(source_, slot_, config_.source, stop, [this](const SourceStatus& status) { changed(status); });
   changed(last);
 }
 
@@ -38,16 +52,17 @@ void SensorWorker::relay(const std::stop_token& stop) {
 }
 
 void SensorWorker::changed(const SourceStatus& status) {
-  SourceState before{};
+  SourceStatus before;
   {
     MutexLock lock(mutex_);
-    before = std::exchange(source_status_, status).state;
+    before = std::exchange(source_status_, status);
   }
   publisher_.put(this->status());
-  if (before == status.state) return;
+  if (before.state == status.state && before.fault == status.fault) return;
   const bool is_trouble = status.state == SourceState::kLost || status.state == SourceState::kFailed || status.state == SourceState::kStalled;
   const std::string why = is_trouble && status.last_error ? ": " + status.last_error->what : "";
-  spdlog::log(is_trouble ? spdlog::level::warn : spdlog::level::info, "sensor {} is {}{}", config_.name, to_string(status.state), why);
+  const std::string fault = status.fault.empty() ? "" : " (" + std::string(status.fault) + ")";
+  spdlog::log(is_trouble || !fault.empty() ? spdlog::level::warn : spdlog::level::info, "sensor {} is {}{}{}", config_.name, to_string(status.state), fault, why);
 }
 
 v1::SensorStatus SensorWorker::status() const {
@@ -59,7 +74,10 @@ v1::SensorStatus SensorWorker::status() const {
   const SensorStatistics::Rates rates = statistics_.rates();
   v1::SensorStatus status;
   status.set_sensor(config_.name);
-  status.set_state(std::string(to_string(source.state)));
+  const bool hangs = source_.hangs();
+  status.set_state(std::string(to_string(hangs ? SourceState::kStalled : source.state)));
+  status.set_fault(std::string(hangs ? fault::kHang : source.fault));
+  status.set_clock_state(std::string(source.clock_state));
   status.set_driver(info_.driver);
   status.set_model(info_.model);
   status.set_serial(info_.serial);

@@ -1,6 +1,9 @@
 #pragma once
 
+#include <atomic>
+#include <cstdint>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <thread>
 
@@ -12,6 +15,22 @@
 #include "publish/publisher.hpp"
 
 namespace gfp {
+
+/// A source of which others can see that a grab does not return.
+class WatchedSource final : public FrameSource {
+ public:
+  explicit WatchedSource(std::unique_ptr<FrameSource> source) : source_(std::move(source)) {}
+  SourceInfo info() const override { return source_->info(); }
+  Result<void> open() override { return source_->open(); }
+  Result<Frame> grab(std::chrono::milliseconds timeout) override;
+  void close() noexcept override { source_->close(); }
+  bool hangs() const;  ///< A grab is over its timeout by half a second. Safe from any thread.
+
+ private:
+  static constexpr std::int64_t kNever = std::numeric_limits<std::int64_t>::max();
+  const std::unique_ptr<FrameSource> source_;
+  std::atomic<std::int64_t> due_ns_{kNever};
+};
 
 /// One sensor at work: a thread that runs its driver, and one that hands its frames on.
 ///
@@ -35,7 +54,7 @@ class SensorWorker {
   void changed(const SourceStatus& status);
 
   const SensorConfig config_;
-  const std::unique_ptr<FrameSource> source_;
+  WatchedSource source_;
   const SourceInfo info_;
   FrameInbox& inbox_;
   Publisher& publisher_;

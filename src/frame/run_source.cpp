@@ -19,12 +19,21 @@ bool is_final(SourceState state) {
   return state == SourceState::kEnded || state == SourceState::kFailed || state == SourceState::kStopped;
 }
 
+/// Errors say their fault at the beginning of their text where the code alone does not.
+std::string_view fault_of(const Error& error) {
+  for (const std::string_view name : {fault::kHang, fault::kCrash, fault::kWrongSize, fault::kNoReadings, fault::kGarbage, fault::kStuck})
+    if (error.what.starts_with(name) && error.what.size() > name.size() && error.what[name.size()] == ':') return name;
+  if (error.code == ErrorCode::kTimeout) return fault::kTimeout;
+  return error.code == ErrorCode::kDeviceLost || error.code == ErrorCode::kNotFound || error.code == ErrorCode::kIo ? fault::kLost : fault::kCorrupt;
+}
+
 /// One call of run_source(): the status and who is told about it.
 class Run {
  public:
   Run(FrameSource& source, LatestSlot<FramePtr>& out, const SourceOptions& options, const std::stop_token& stop,
       const std::function<void(const SourceStatus&)>& on_change)
-      : source_(source), out_(out), options_(options), stop_(stop), on_change_(on_change) {}
+      : source_(source), out_(out), options_(options), stop_(stop), on_change_(on_change),
+        health_(options.health, source.info().rate_hz, source.info().finite || source.info().may_repeat) {}
 
   SourceStatus until_final() {
     Backoff backoff(options_.reconnect);
@@ -42,8 +51,10 @@ class Run {
   bool open() {
     if (stop_.stop_requested()) return change(SourceState::kStopped), false;
     const Result<void> opened = source_.open();
+    health_.restart();
     if (opened) return true;
     status_.last_error = opened.error();
+    next_fault_ = is_permanent(opened.error().code) ? std::string_view() : fault_of(opened.error());
     change(is_permanent(opened.error().code) ? SourceState::kFailed : SourceState::kLost);
     return false;
   }
@@ -53,6 +64,7 @@ class Run {
     for (int stalls = 0; stalls < options_.stalls_before_reopen;) {
       if (stop_.stop_requested()) return change(SourceState::kStopped);
       Result<Frame> frame = source_.grab(timeout);
+      if (frame) frame = health_.judge(*frame).map([&] { return std::move(*frame); });
       if (frame) {
         if (!deliver(std::move(*frame))) return change(SourceState::kStopped);
         backoff.reset();
@@ -60,11 +72,12 @@ class Run {
         continue;
       }
       status_.last_error = frame.error();
+      next_fault_ = fault_of(frame.error());
       if (frame.error().code == ErrorCode::kEndOfStream) return change(SourceState::kEnded);
       if (frame.error().code == ErrorCode::kDeviceLost) return change(SourceState::kLost);
       ++(frame.error().code == ErrorCode::kTimeout ? status_.timeouts : status_.corrupt_frames);
       ++stalls;
-      if (status_.state == SourceState::kStreaming) change(SourceState::kStalled);
+      change(status_.state == SourceState::kStreaming ? SourceState::kStalled : status_.state);
     }
     change(SourceState::kLost);
   }
@@ -74,14 +87,19 @@ class Run {
     ++status_.frames;
     if (was_lost_) ++status_.reconnects;
     was_lost_ = false;
+    next_fault_ = health_.fault();
+    status_.clock_state = health_.clock_state();
     change(SourceState::kStreaming);
     return true;
   }
 
   void change(SourceState state) {
     if (state == SourceState::kLost && status_.frames > 0) was_lost_ = true;
-    if (state == status_.state) return;
+    const bool ended = state == SourceState::kEnded || state == SourceState::kStopped;
+    const std::string_view fault = ended ? std::string_view() : next_fault_;
+    if (state == status_.state && fault == status_.fault) return;
     status_.state = state;
+    status_.fault = fault;
     if (on_change_) on_change_(status_);
   }
 
@@ -90,7 +108,9 @@ class Run {
   const SourceOptions& options_;
   const std::stop_token& stop_;
   const std::function<void(const SourceStatus&)>& on_change_;
+  FrameHealth health_;
   SourceStatus status_;
+  std::string_view next_fault_;  ///< Of the status with the next change.
   bool was_lost_ = false;
 };
 

@@ -36,7 +36,9 @@ Outcome run(ScriptedSource& source, const SourceOptions& options = fast_options(
   std::jthread taker([&] {
     while (const auto taken = slot.take()) outcome.sequences.push_back((*taken)->sequence);
   });
-  outcome.status = run_source(source, slot, options, {}, [&](const SourceStatus& s) { outcome.changes.push_back(s.state); });
+  outcome.status = run_source(source, slot, options, {}, [&](const SourceStatus& s) {
+    if (outcome.changes.empty() || outcome.changes.back() != s.state) outcome.changes.push_back(s.state);  // the fault alone may change too
+  });
   taker.join();
   return outcome;
 }

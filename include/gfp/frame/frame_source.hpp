@@ -17,6 +17,7 @@ struct SourceInfo {
   double min_depth_m = 0;
   double max_depth_m = 0;
   bool finite = false;       ///< A recording that ends: grab() then says kEndOfStream.
+  bool may_repeat = false;   ///< Frames may equal each other without anything being stuck: a loop, a sensor without noise.
 };
 
 /// The driver interface; everything above it is written once. One thread at a time.

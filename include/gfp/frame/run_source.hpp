@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "gfp/frame/backoff.hpp"
+#include "gfp/frame/frame_health.hpp"
 #include "gfp/frame/frame_source.hpp"
 #include "gfp/frame/latest_slot.hpp"
 
@@ -32,12 +33,15 @@ struct SourceStatus {
   std::uint64_t corrupt_frames = 0;  ///< Frames that were damaged and left out.
   std::uint64_t reconnects = 0;      ///< Times that frames came again after the source had been lost.
   std::optional<Error> last_error;   ///< The latest of any kind; stays after recovery.
+  std::string_view fault;            ///< What is wrong now, by a name of gfp::fault; empty: nothing.
+  std::string_view clock_state = "free";  ///< As FrameHealth says it.
 };
 
 struct SourceOptions {
   double grab_timeout_s = 0.5;    ///< Also bounds how long stopping takes.
   int stalls_before_reopen = 6;   ///< So many fruitless grabs in a row mean a stuck device: it is closed and opened again.
   BackoffOptions reconnect;
+  FrameHealthOptions health;
 };
 
 template <class Visitor>
@@ -45,12 +49,15 @@ void visit_fields(SourceOptions& o, Visitor&& field) {
   field("grab_timeout_s", o.grab_timeout_s, 0.001, 60.0);
   field("stalls_before_reopen", o.stalls_before_reopen, 1, 1'000'000);
   field.section("reconnect", o.reconnect);
+  field.section("health", o.health);
 }
 
 /// The life of one source, on the caller's thread: opens, grabs and hands over until `stop` is requested, the stream ends
 /// or its configuration proves wrong; reopens a lost or stuck device with back-off. Closes the source and the slot at the end.
 ///
-/// `on_change` is called on this thread once per change of state (not per frame), after the status was updated.
+/// Frames that FrameHealth refuses count as corrupt and are not handed over.
+///
+/// `on_change` is called on this thread once per change of state or fault (not per frame), after the status was updated.
 /// grab(): kTimeout and damage of one frame (any other code) are counted, kDeviceLost reopens, kEndOfStream ends.
 /// open(): kInvalidArgument, kUnsupported, kCorruptData and kTooLarge end as kFailed; anything else is tried again.
 SourceStatus run_source(FrameSource& source, LatestSlot<FramePtr>& out, const SourceOptions& options,
