@@ -1,5 +1,8 @@
 #include "app/devices.hpp"
 
+#ifdef GFP_HAS_BUMBLEBEE
+#include "bumblebee/bumblebee_source.hpp"
+#endif
 #ifdef GFP_HAS_FREENECT
 #include "freenect/freenect_source.hpp"
 #endif
@@ -30,6 +33,14 @@ Result<std::vector<Device>> openni2_devices() {
 }
 #endif
 
+#ifdef GFP_HAS_BUMBLEBEE
+Result<std::vector<Device>> bumblebee_devices() {
+  std::vector<Device> devices;
+  for (const BumblebeeDevice& device : list_bumblebee_devices()) devices.push_back({"bumblebee", device.id, device.serial, device.model});
+  return devices;
+}
+#endif
+
 }  // namespace
 
 std::vector<DeviceSearch> find_devices() {
@@ -39,6 +50,9 @@ std::vector<DeviceSearch> find_devices() {
 #endif
 #ifdef GFP_HAS_OPENNI2
   searches.push_back({"openni2", openni2_devices()});
+#endif
+#ifdef GFP_HAS_BUMBLEBEE
+  searches.push_back({"bumblebee", bumblebee_devices()});
 #endif
   return searches;
 }

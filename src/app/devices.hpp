@@ -10,7 +10,7 @@ namespace gfp {
 /// A sensor that is plugged in, as a configuration would name it.
 struct Device {
   std::string driver;  ///< SensorConfig::driver.
-  std::string input;   ///< SensorConfig::input, for openni2.
+  std::string input;   ///< SensorConfig::input, for openni2 and bumblebee.
   std::string serial;  ///< freenect.serial, for freenect.
   std::string name;    ///< For people.
 };

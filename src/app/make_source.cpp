@@ -4,12 +4,17 @@
 
 #include "app/isolated_source.hpp"
 #include "config/camera_file.hpp"
+#include "config/stereo_calibration_file.hpp"
+#ifdef GFP_HAS_BUMBLEBEE
+#include "bumblebee/bumblebee_source.hpp"
+#endif
 #ifdef GFP_HAS_FREENECT
 #include "freenect/freenect_source.hpp"
 #endif
 #ifdef GFP_HAS_OPENNI2
 #include "openni2/openni2_source.hpp"
 #endif
+#include "gfp/cloud/rectify_stereo.hpp"
 #include "replay/mcap_source.hpp"
 #include "replay/replay_source.hpp"
 #include "synthetic/synthetic_source.hpp"
@@ -67,11 +72,29 @@ Result<std::unique_ptr<FrameSource>> make_openni2(const SensorConfig& sensor) {
 }
 #endif
 
+#ifdef GFP_HAS_BUMBLEBEE
+Result<std::unique_ptr<FrameSource>> make_bumblebee(const SensorConfig& sensor) {
+  if (sensor.calibration.empty())
+    return failure(ErrorCode::kInvalidArgument, fmt::format("sensor {}: calibration is empty, expected a stereo calibration (`gfp calibrate` makes one)", sensor.name));
+  const auto calibration = config::load_stereo_calibration(sensor.calibration);
+  if (!calibration) return tl::unexpected(calibration.error());
+  auto rectifier = StereoRectifier::make(*calibration);
+  if (!rectifier) return tl::unexpected(rectifier.error());
+  BumblebeeOptions options = sensor.bumblebee;
+  options.sensor = sensor.name;
+  options.device = sensor.input;
+  return make_bumblebee_source(std::move(options), stereo_to_frame(std::move(*rectifier), sensor.stereo, calibration->T_world_sensor));
+}
+#endif
+
 Result<std::unique_ptr<FrameSource>> make_driver(const SensorConfig& sensor) {
   if (sensor.driver == "replay") return make_replay(sensor);
   if (sensor.driver == "synthetic") return make_synthetic(sensor);
 #ifdef GFP_HAS_FREENECT
   if (sensor.driver == "freenect") return make_freenect(sensor);
+#endif
+#ifdef GFP_HAS_BUMBLEBEE
+  if (sensor.driver == "bumblebee") return make_bumblebee(sensor);
 #endif
 #ifdef GFP_HAS_OPENNI2
   if (sensor.driver == "openni2") return make_openni2(sensor);

@@ -5,7 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "bumblebee/bumblebee_options.hpp"
 #include "freenect/freenect_options.hpp"
+#include "gfp/cloud/stereo_to_depth.hpp"
 #include "gfp/core/error.hpp"
 #include "gfp/core/fields.hpp"
 #include "gfp/frame/failing_source.hpp"
@@ -25,7 +27,8 @@ struct SensorConfig {
   std::string name = "camera";      ///< [a-z0-9_]+, unique.
   std::string driver = "synthetic";
   std::string input;                ///< File or folder that `replay` plays; of `freenect` a recorded folder instead of a
-                                    ///< device; of `openni2` a device's URI or an .oni file.
+                                    ///< device; of `openni2` a device's URI or an .oni file; of `bumblebee` the camera.
+  std::string calibration;          ///< Of `bumblebee`: a stereo calibration (OpenCV YAML, or `left.yaml,right.yaml` of ROS).
   std::string camera;               ///< Camera file, or `fx,fy,cx,cy`; empty: what the driver knows by itself.
   std::string isolation = "none";   ///< `process`: the driver runs in a process of its own, which may crash or hang.
   SourceOptions source;             ///< Timeouts and reconnection.
@@ -34,13 +37,16 @@ struct SensorConfig {
   SyntheticOptions synthetic;       ///< Likewise.
   FreenectOptions freenect;         ///< Likewise; its `folder` is `input`.
   OpenNi2Options openni2;           ///< Likewise; its `uri` is `input`.
+  BumblebeeOptions bumblebee;       ///< Likewise; its `device` is `input`.
+  StereoOptions stereo;             ///< Matching, of `bumblebee`.
 };
 
 template <class Visitor>
 void visit_fields(SensorConfig& o, Visitor&& field) {
   field("name", o.name);
-  field("driver", o.driver, OneOf{{"synthetic", "replay", "freenect", "openni2"}});
+  field("driver", o.driver, OneOf{{"synthetic", "replay", "freenect", "openni2", "bumblebee"}});
   field("input", o.input);
+  field("calibration", o.calibration);
   field("camera", o.camera);
   field("isolation", o.isolation, OneOf{{"none", "process"}});
   field.section("source", o.source);
@@ -49,6 +55,8 @@ void visit_fields(SensorConfig& o, Visitor&& field) {
   field.section("synthetic", o.synthetic);
   field.section("freenect", o.freenect);
   field.section("openni2", o.openni2);
+  field.section("bumblebee", o.bumblebee);
+  field.section("stereo", o.stereo);
 }
 
 struct LogOptions {

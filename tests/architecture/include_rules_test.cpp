@@ -63,6 +63,8 @@ const std::vector<Owner> kOwners{
     {R"(spdlog/)", {"src/daemon"}},
     {R"(^png\.h$)", {"src/frame"}},
     {R"(^libfreenect)", {"drivers/freenect"}},
+    {R"(^arv\.h$)", {"drivers/bumblebee"}},
+    {R"(^jpeglib\.h$)", {"src/frame"}},
     {R"(^OniC|^Driver/Oni|^OpenNI)", {"drivers/openni2"}},
     {R"(tbb/)", {"src/pipeline", "src/app", "src/daemon", "src/evaluation", "src/cli"}},
 };

@@ -8,6 +8,13 @@
 #include "gfp/evaluation/metrics.hpp"
 #include "gfp/pipeline/process_frame.hpp"
 #include "openni2/openni2_source.hpp"
+#ifdef GFP_HAS_BUMBLEBEE
+#include "bumblebee/bumblebee_source.hpp"
+#include "bumblebee/fake/fake_bumblebee.hpp"
+#include "bumblebee/fake/textured_pair.hpp"
+#include "gfp/cloud/rectify_stereo.hpp"
+#include "support/gige_lock.hpp"
+#endif
 #include "support/fakenect_folder.hpp"
 #include "synthetic/synthetic_source.hpp"
 
@@ -141,6 +148,29 @@ TEST_F(SensorPaths, OpenNi2LiveAndRecorded) {
   expect_same_objects(first_frame(*recorded), "recorded");
   fs::remove(file);
 }
+
+#ifdef GFP_HAS_BUMBLEBEE
+// The same scene with a grain on its surfaces, through a stereo camera on the network and the matcher: another sensor, so its objects are reported, and only
+// their presence is asked for.
+TEST_F(SensorPaths, BumblebeeOverTheNetwork) {
+  const test::GigeLock lock;
+  constexpr double kBaseline_m = 0.12;
+  const SyntheticSource source(scene_options());
+  const CameraModel camera = default_kinect_camera();
+  const auto fake = FakeBumblebee::start({textured_pair(source.scene(), camera, kBaseline_m, truth_->T_world_camera, 2.0, 1)});
+  ASSERT_TRUE(fake) << fake.error().what;
+  auto rectifier = StereoRectifier::make(calibration_of_pair(camera, kBaseline_m, truth_->T_world_camera));
+  ASSERT_TRUE(rectifier) << rectifier.error().what;
+  StereoOptions matching;
+  matching.disparities = 128;
+  const auto bumblebee = make_bumblebee_source({}, stereo_to_frame(std::move(*rectifier), matching, truth_->T_world_camera));
+  const std::vector<Seen> seen = compare(scene_of(first_frame(*bumblebee)));
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    std::printf("stereo: object %zu is a %s, IoU %.3f (Kinect: %s, %.3f)\n", i, seen[i].class_name.c_str(), seen[i].iou_filled, (*direct_)[i].class_name.c_str(), (*direct_)[i].iou_filled);
+    EXPECT_GT(seen[i].iou_filled, 0.3) << "object " << i;
+  }
+}
+#endif
 
 }  // namespace
 }  // namespace gfp

@@ -1,0 +1,135 @@
+#include "bumblebee/aravis_camera.hpp"
+
+extern "C" {
+#include <arv.h>
+}
+#include <fmt/format.h>
+
+#include <atomic>
+#include <functional>
+#include <utility>
+
+namespace gfp {
+namespace {
+
+constexpr int kBuffers = 8;
+constexpr std::uint64_t kMaxPayload = std::uint64_t{256} << 20;
+
+/// Collects Aravis' error; true in a condition where there was one.
+class Failure {
+ public:
+  ~Failure() { g_clear_error(&error_); }
+  Failure() = default;
+  Failure(const Failure&) = delete;
+  Failure& operator=(const Failure&) = delete;
+  operator GError**() { return g_clear_error(&error_), &error_; }
+  explicit operator bool() const { return error_ != nullptr; }
+  std::string why() const { return error_ != nullptr ? error_->message : "unknown"; }
+
+ private:
+  GError* error_ = nullptr;
+};
+
+std::string text(const char* from) { return from != nullptr ? from : ""; }
+
+}  // namespace
+
+struct AravisCamera::Handles {
+  ArvCamera* camera = nullptr;
+  ArvStream* stream = nullptr;
+  gulong lost_signal = 0;
+  std::atomic<bool> lost{false};
+};
+
+AravisCamera::AravisCamera() : handles_(std::make_unique<Handles>()) {}
+
+AravisCamera::~AravisCamera() {
+  if (handles_->camera != nullptr) {
+    if (handles_->lost_signal != 0) g_signal_handler_disconnect(arv_camera_get_device(handles_->camera), handles_->lost_signal);
+    Failure ignored;
+    if (!handles_->lost) arv_camera_stop_acquisition(handles_->camera, ignored);
+  }
+  g_clear_object(&handles_->stream);
+  g_clear_object(&handles_->camera);
+}
+
+Result<std::unique_ptr<AravisCamera>> AravisCamera::open(const std::string& device, const BumblebeeOptions& options) {
+  std::unique_ptr<AravisCamera> camera(new AravisCamera);
+  Failure failed;
+  camera->handles_->camera = arv_camera_new(device.empty() ? nullptr : device.c_str(), failed);
+  if (failed || camera->handles_->camera == nullptr)
+    return failure(ErrorCode::kDeviceLost, fmt::format("Aravis: {} cannot be opened: {}", device.empty() ? "no camera" : device, failed ? failed.why() : "none answers"));
+  camera->model_ = text(arv_camera_get_vendor_name(camera->handles_->camera, failed)) + " " + text(arv_camera_get_model_name(camera->handles_->camera, failed));
+  camera->serial_ = text(arv_camera_get_device_serial_number(camera->handles_->camera, failed));
+  if (auto set = camera->configure(options); !set) return tl::unexpected<Error>(set.error());
+  if (auto started = camera->start(options); !started) return tl::unexpected<Error>(started.error());
+  return camera;
+}
+
+Result<void> AravisCamera::configure(const BumblebeeOptions& options) {
+  ArvCamera* const camera = handles_->camera;
+  Failure failed;
+  const auto refused = [&](const char* what) { return failure(ErrorCode::kUnsupported, fmt::format("{}: {} is refused: {}", model_, what, failed.why())); };
+  arv_camera_stop_acquisition(camera, failed);  // a program that died may have left it running
+  arv_camera_set_acquisition_mode(camera, ARV_ACQUISITION_MODE_CONTINUOUS, failed);
+  if (!options.pixel_format.empty()) arv_camera_set_pixel_format_from_string(camera, options.pixel_format.c_str(), failed);
+  if (!options.pixel_format.empty() && failed) return refused(("bumblebee.pixel_format = " + options.pixel_format).c_str());
+  if (options.exposure_us > 0) arv_camera_set_exposure_time(camera, options.exposure_us, failed);
+  if (options.exposure_us > 0 && failed) return refused("bumblebee.exposure_us");
+  if (options.rate_hz > 0) arv_camera_set_frame_rate(camera, options.rate_hz, failed);
+  if (options.rate_hz > 0 && failed) return refused("bumblebee.rate_hz");
+  if (!arv_camera_is_gv_device(camera)) return {};
+  // With raw sockets (as root) nothing arrives from this machine itself, and elsewhere they buy little. The camera keeps the last client's packet size.
+  arv_camera_gv_set_stream_options(camera, ARV_GV_STREAM_OPTION_PACKET_SOCKET_DISABLED);
+  arv_camera_gv_set_packet_size(camera, options.packet_bytes, failed);
+  if (failed) return refused("bumblebee.packet_bytes");
+  if (options.packet_delay_ns > 0) arv_camera_gv_set_packet_delay(camera, options.packet_delay_ns, failed);
+  if (options.packet_delay_ns > 0 && failed) return refused("bumblebee.packet_delay_ns");
+  return {};
+}
+
+Result<void> AravisCamera::start(const BumblebeeOptions& options) {
+  Failure failed;
+  const auto lost = [&](const char* what) { return failure(ErrorCode::kDeviceLost, fmt::format("{}: {}: {}", model_, what, failed.why())); };
+  const std::uint64_t payload = arv_camera_get_payload(handles_->camera, failed);
+  if (failed || payload == 0 || payload > kMaxPayload) return lost("its payload cannot be told");
+  handles_->stream = arv_camera_create_stream(handles_->camera, nullptr, nullptr, failed);
+  if (failed || handles_->stream == nullptr) return lost("no stream");
+  if (ARV_IS_GV_STREAM(handles_->stream))  // Aravis' own choice of buffer loses frames of 640 x 480 already
+    g_object_set(handles_->stream, "socket-buffer", ARV_GV_STREAM_SOCKET_BUFFER_FIXED, "socket-buffer-size", options.socket_buffer_bytes, nullptr);
+  for (int i = 0; i < kBuffers; ++i) arv_stream_push_buffer(handles_->stream, arv_buffer_new(payload, nullptr));
+  handles_->lost_signal = g_signal_connect(arv_camera_get_device(handles_->camera), "control-lost",
+                                           G_CALLBACK(+[](ArvDevice*, Handles* handles) { handles->lost = true; }), handles_.get());
+  arv_camera_start_acquisition(handles_->camera, failed);
+  if (failed) return lost("it does not start");
+  return {};
+}
+
+Result<Transfer> AravisCamera::next(std::chrono::milliseconds timeout) {
+  if (handles_->lost) return failure(ErrorCode::kDeviceLost, fmt::format("{}: control was lost", model_));
+  ArvBuffer* const buffer = arv_stream_timeout_pop_buffer(handles_->stream, static_cast<guint64>(1000 * timeout.count()));
+  if (buffer == nullptr && handles_->lost) return failure(ErrorCode::kDeviceLost, fmt::format("{}: control was lost", model_));
+  if (buffer == nullptr) return failure(ErrorCode::kTimeout, fmt::format("{}: no picture within {} ms", model_, timeout.count()));
+  const std::unique_ptr<ArvBuffer, std::function<void(ArvBuffer*)>> back(buffer, [this](ArvBuffer* used) { arv_stream_push_buffer(handles_->stream, used); });
+  if (const auto status = arv_buffer_get_status(buffer); status != ARV_BUFFER_STATUS_SUCCESS)
+    return failure(ErrorCode::kCorruptFrame, fmt::format("{}: an incomplete picture (status {}): packets are missing", model_, static_cast<int>(status)));
+  std::size_t size = 0;
+  const auto* const data = static_cast<const std::uint8_t*>(arv_buffer_get_data(buffer, &size));
+  Transfer transfer;
+  transfer.arrival = monotonic_now();
+  transfer.device = Nanoseconds(static_cast<std::int64_t>(arv_buffer_get_timestamp(buffer)));
+  transfer.width = arv_buffer_get_image_width(buffer);
+  transfer.height = arv_buffer_get_image_height(buffer);
+  transfer.bytes_per_pixel = static_cast<int>(ARV_PIXEL_FORMAT_BIT_PER_PIXEL(arv_buffer_get_image_pixel_format(buffer)) / 8);
+  transfer.bytes.assign(data, data + size);
+  return transfer;
+}
+
+std::vector<AravisDevice> list_aravis_devices() {
+  arv_update_device_list();
+  std::vector<AravisDevice> devices;
+  for (unsigned i = 0; i < arv_get_n_devices(); ++i) devices.push_back({text(arv_get_device_id(i)), text(arv_get_device_vendor(i)) + " " + text(arv_get_device_model(i)), text(arv_get_device_serial_nbr(i))});
+  return devices;
+}
+
+}  // namespace gfp

@@ -1,0 +1,120 @@
+// The driver against a camera of Aravis' own on the loopback interface: real GVCP and GVSP packets.
+#include "bumblebee/bumblebee_source.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "bumblebee/fake/fake_bumblebee.hpp"
+#include "gfp/core/random.hpp"
+#include "support/gige_lock.hpp"
+
+namespace gfp {
+namespace {
+
+using namespace std::chrono_literals;
+
+/// Pictures that tell which pair they are of, and whether they are whole.
+std::vector<StereoPair> pictures() {
+  std::vector<StereoPair> pairs;
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    Random random(seed);
+    StereoPair pair{Image<std::uint8_t>(640, 480), Image<std::uint8_t>(640, 480), {}};
+    for (auto* eye : {&pair.left, &pair.right})
+      for (auto& pixel : eye->pixels) pixel = static_cast<std::uint8_t>(random.next());
+    pairs.push_back(std::move(pair));
+  }
+  return pairs;
+}
+
+/// A source whose frames carry nothing; the pairs are compared where they arrive.
+struct Receiver {
+  std::vector<StereoPair> sent = pictures();
+  int whole = 0, damaged = 0;
+
+  StereoToFrame to_frame() {
+    return [this](const StereoPair& pair, Frame&) -> Result<void> {
+      const bool known = std::any_of(sent.begin(), sent.end(), [&](const StereoPair& one) { return one.left.pixels == pair.left.pixels && one.right.pixels == pair.right.pixels; });
+      ++(known ? whole : damaged);
+      return {};
+    };
+  }
+};
+
+BumblebeeOptions options() {
+  BumblebeeOptions options;
+  options.device = "Aravis-GFPBB01";
+  return options;
+}
+
+TEST(Bumblebee, EveryPictureArrivesWholeAndTimeGoesForward) {
+  const test::GigeLock lock;
+  Receiver receiver;
+  const auto fake = FakeBumblebee::start(receiver.sent);
+  ASSERT_TRUE(fake) << fake.error().what;
+  const auto source = make_bumblebee_source(options(), receiver.to_frame());
+  const auto opened = source->open();
+  ASSERT_TRUE(opened) << opened.error().what;
+  Nanoseconds last{-1};
+  for (int i = 0; i < 40; ++i) {
+    const auto frame = source->grab(2s);
+    if (!frame) continue;
+    EXPECT_GT(frame->stamps.sensor, last);
+    last = frame->stamps.sensor;
+  }
+  EXPECT_GE(receiver.whole, 36);  // a busy machine may lose packets; what it has received is whole
+  EXPECT_EQ(receiver.damaged, 0);
+}
+
+TEST(Bumblebee, AnIncompletePictureIsNeverPassedOn) {
+  const test::GigeLock lock;
+  Receiver receiver;
+  FakeBumblebeeOptions lossy;
+  lossy.lost_packets = 0.001;  // of 440 packets a frame
+  const auto fake = FakeBumblebee::start(receiver.sent, lossy);
+  ASSERT_TRUE(fake) << fake.error().what;
+  const auto source = make_bumblebee_source(options(), receiver.to_frame());
+  ASSERT_TRUE(source->open());
+  int corrupt = 0;
+  for (int i = 0; i < 60; ++i) {
+    const auto frame = source->grab(2s);
+    corrupt += !frame && frame.error().code == ErrorCode::kCorruptFrame ? 1 : 0;
+  }
+  EXPECT_GT(corrupt, 5);
+  EXPECT_GT(receiver.whole, 15);
+  EXPECT_EQ(receiver.damaged, 0);
+}
+
+TEST(Bumblebee, PluggedInAgainItGoesOn) {
+  const test::GigeLock lock;
+  Receiver receiver;
+  const auto source = make_bumblebee_source(options(), receiver.to_frame());
+  EXPECT_EQ(source->open().error().code, ErrorCode::kDeviceLost) << "nothing is plugged in";
+  Nanoseconds last{-1};
+  for (int cycle = 0; cycle < 2; ++cycle) {
+    auto fake = FakeBumblebee::start(receiver.sent);
+    ASSERT_TRUE(fake) << fake.error().what;
+    const auto opened = source->open();
+    ASSERT_TRUE(opened) << opened.error().what;
+    Result<Frame> frame = failure(ErrorCode::kTimeout, "");
+    for (int attempt = 0; attempt < 5 && !frame; ++attempt) frame = source->grab(2s);
+    ASSERT_TRUE(frame) << frame.error().what;
+    EXPECT_GT(frame->stamps.sensor, last);
+    last = frame->stamps.sensor;
+    fake->reset();
+    for (int attempt = 0; attempt < 10 && frame; ++attempt) frame = source->grab(200ms);  // what was under way
+    EXPECT_FALSE(frame);
+    source->close();
+  }
+}
+
+TEST(Bumblebee, TwoDevicesNeedTwoNames) {
+  BumblebeeOptions two;
+  two.layout = "two_devices";
+  two.device = "only_one";
+  EXPECT_EQ(make_bumblebee_source(two, {})->open().error().code, ErrorCode::kInvalidArgument);
+  EXPECT_EQ(make_bumblebee_source(two, {})->grab(1ms).error().code, ErrorCode::kDeviceLost) << "not open";
+}
+
+}  // namespace
+}  // namespace gfp
