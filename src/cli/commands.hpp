@@ -8,8 +8,10 @@ namespace gfp {
 
 /// Each adds one subcommand to `app`; when the command runs (in a CLI11 callback), it says in `status` how it ended.
 /// `status` lives as long as `app`.
+void add_calibrate_command(CLI::App& app, ExitStatus& status);
 void add_config_command(CLI::App& app, ExitStatus& status);
 void add_devices_command(CLI::App& app, ExitStatus& status);
+void add_doctor_command(CLI::App& app, ExitStatus& status);
 void add_diff_command(CLI::App& app, ExitStatus& status);
 void add_echo_command(CLI::App& app, ExitStatus& status);
 void add_fit_command(CLI::App& app, ExitStatus& status);

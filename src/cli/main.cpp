@@ -17,8 +17,10 @@ int run(int argc, char** argv) {
   gfp::add_fit_command(app, status);
   gfp::add_eval_command(app, status);
   gfp::add_primitive_command(app, status);
+  gfp::add_calibrate_command(app, status);
   gfp::add_config_command(app, status);
   gfp::add_devices_command(app, status);
+  gfp::add_doctor_command(app, status);
   gfp::add_record_command(app, status);
   gfp::add_replay_command(app, status);
   gfp::add_repair_command(app, status);
