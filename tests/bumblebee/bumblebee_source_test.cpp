@@ -56,13 +56,13 @@ TEST(Bumblebee, EveryPictureArrivesWholeAndTimeGoesForward) {
   const auto opened = source->open();
   ASSERT_TRUE(opened) << opened.error().what;
   Nanoseconds last{-1};
-  for (int i = 0; i < 40; ++i) {
+  for (int i = 0; i < 400 && receiver.whole < 20; ++i) {  // a busy machine may lose packets; what arrives is whole
     const auto frame = source->grab(2s);
     if (!frame) continue;
     EXPECT_GT(frame->stamps.sensor, last);
     last = frame->stamps.sensor;
   }
-  EXPECT_GE(receiver.whole, 36);  // a busy machine may lose packets; what it has received is whole
+  EXPECT_EQ(receiver.whole, 20);
   EXPECT_EQ(receiver.damaged, 0);
 }
 
@@ -76,12 +76,12 @@ TEST(Bumblebee, AnIncompletePictureIsNeverPassedOn) {
   const auto source = make_bumblebee_source(options(), receiver.to_frame());
   ASSERT_TRUE(source->open());
   int corrupt = 0;
-  for (int i = 0; i < 60; ++i) {
+  for (int i = 0; i < 400 && (receiver.whole < 10 || corrupt < 5); ++i) {
     const auto frame = source->grab(2s);
     corrupt += !frame && frame.error().code == ErrorCode::kCorruptFrame ? 1 : 0;
   }
-  EXPECT_GT(corrupt, 5);
-  EXPECT_GT(receiver.whole, 15);
+  EXPECT_GE(corrupt, 5);
+  EXPECT_GE(receiver.whole, 10);
   EXPECT_EQ(receiver.damaged, 0);
 }
 
@@ -97,7 +97,7 @@ TEST(Bumblebee, PluggedInAgainItGoesOn) {
     const auto opened = source->open();
     ASSERT_TRUE(opened) << opened.error().what;
     Result<Frame> frame = failure(ErrorCode::kTimeout, "");
-    for (int attempt = 0; attempt < 5 && !frame; ++attempt) frame = source->grab(2s);
+    for (int attempt = 0; attempt < 50 && !frame; ++attempt) frame = source->grab(500ms);
     ASSERT_TRUE(frame) << frame.error().what;
     EXPECT_GT(frame->stamps.sensor, last);
     last = frame->stamps.sensor;
