@@ -22,7 +22,7 @@ class Failure {
   Failure() = default;
   Failure(const Failure&) = delete;
   Failure& operator=(const Failure&) = delete;
-  operator GError**() { return g_clear_error(&error_), &error_; }
+  GError** out() { return g_clear_error(&error_), &error_; }
   explicit operator bool() const { return error_ != nullptr; }
   std::string why() const { return error_ != nullptr ? error_->message : "unknown"; }
 
@@ -47,7 +47,7 @@ AravisCamera::~AravisCamera() {
   if (handles_->camera != nullptr) {
     if (handles_->lost_signal != 0) g_signal_handler_disconnect(arv_camera_get_device(handles_->camera), handles_->lost_signal);
     Failure ignored;
-    if (!handles_->lost) arv_camera_stop_acquisition(handles_->camera, ignored);
+    if (!handles_->lost) arv_camera_stop_acquisition(handles_->camera, ignored.out());
   }
   g_clear_object(&handles_->stream);
   g_clear_object(&handles_->camera);
@@ -56,11 +56,11 @@ AravisCamera::~AravisCamera() {
 Result<std::unique_ptr<AravisCamera>> AravisCamera::open(const std::string& device, const BumblebeeOptions& options) {
   std::unique_ptr<AravisCamera> camera(new AravisCamera);
   Failure failed;
-  camera->handles_->camera = arv_camera_new(device.empty() ? nullptr : device.c_str(), failed);
+  camera->handles_->camera = arv_camera_new(device.empty() ? nullptr : device.c_str(), failed.out());
   if (failed || camera->handles_->camera == nullptr)
     return failure(ErrorCode::kDeviceLost, fmt::format("Aravis: {} cannot be opened: {}", device.empty() ? "no camera" : device, failed ? failed.why() : "none answers"));
-  camera->model_ = text(arv_camera_get_vendor_name(camera->handles_->camera, failed)) + " " + text(arv_camera_get_model_name(camera->handles_->camera, failed));
-  camera->serial_ = text(arv_camera_get_device_serial_number(camera->handles_->camera, failed));
+  camera->model_ = text(arv_camera_get_vendor_name(camera->handles_->camera, failed.out())) + " " + text(arv_camera_get_model_name(camera->handles_->camera, failed.out()));
+  camera->serial_ = text(arv_camera_get_device_serial_number(camera->handles_->camera, failed.out()));
   if (auto set = camera->configure(options); !set) return tl::unexpected<Error>(set.error());
   if (auto started = camera->start(options); !started) return tl::unexpected<Error>(started.error());
   return camera;
@@ -70,20 +70,20 @@ Result<void> AravisCamera::configure(const BumblebeeOptions& options) {
   ArvCamera* const camera = handles_->camera;
   Failure failed;
   const auto refused = [&](const char* what) { return failure(ErrorCode::kUnsupported, fmt::format("{}: {} is refused: {}", model_, what, failed.why())); };
-  arv_camera_stop_acquisition(camera, failed);  // a program that died may have left it running
-  arv_camera_set_acquisition_mode(camera, ARV_ACQUISITION_MODE_CONTINUOUS, failed);
-  if (!options.pixel_format.empty()) arv_camera_set_pixel_format_from_string(camera, options.pixel_format.c_str(), failed);
+  arv_camera_stop_acquisition(camera, failed.out());  // a program that died may have left it running
+  arv_camera_set_acquisition_mode(camera, ARV_ACQUISITION_MODE_CONTINUOUS, failed.out());
+  if (!options.pixel_format.empty()) arv_camera_set_pixel_format_from_string(camera, options.pixel_format.c_str(), failed.out());
   if (!options.pixel_format.empty() && failed) return refused(("bumblebee.pixel_format = " + options.pixel_format).c_str());
-  if (options.exposure_us > 0) arv_camera_set_exposure_time(camera, options.exposure_us, failed);
+  if (options.exposure_us > 0) arv_camera_set_exposure_time(camera, options.exposure_us, failed.out());
   if (options.exposure_us > 0 && failed) return refused("bumblebee.exposure_us");
-  if (options.rate_hz > 0) arv_camera_set_frame_rate(camera, options.rate_hz, failed);
+  if (options.rate_hz > 0) arv_camera_set_frame_rate(camera, options.rate_hz, failed.out());
   if (options.rate_hz > 0 && failed) return refused("bumblebee.rate_hz");
   if (!arv_camera_is_gv_device(camera)) return {};
   // With raw sockets (as root) nothing arrives from this machine itself, and elsewhere they buy little. The camera keeps the last client's packet size.
   arv_camera_gv_set_stream_options(camera, ARV_GV_STREAM_OPTION_PACKET_SOCKET_DISABLED);
-  arv_camera_gv_set_packet_size(camera, options.packet_bytes, failed);
+  arv_camera_gv_set_packet_size(camera, options.packet_bytes, failed.out());
   if (failed) return refused("bumblebee.packet_bytes");
-  if (options.packet_delay_ns > 0) arv_camera_gv_set_packet_delay(camera, options.packet_delay_ns, failed);
+  if (options.packet_delay_ns > 0) arv_camera_gv_set_packet_delay(camera, options.packet_delay_ns, failed.out());
   if (options.packet_delay_ns > 0 && failed) return refused("bumblebee.packet_delay_ns");
   return {};
 }
@@ -91,16 +91,16 @@ Result<void> AravisCamera::configure(const BumblebeeOptions& options) {
 Result<void> AravisCamera::start(const BumblebeeOptions& options) {
   Failure failed;
   const auto lost = [&](const char* what) { return failure(ErrorCode::kDeviceLost, fmt::format("{}: {}: {}", model_, what, failed.why())); };
-  const std::uint64_t payload = arv_camera_get_payload(handles_->camera, failed);
+  const std::uint64_t payload = arv_camera_get_payload(handles_->camera, failed.out());
   if (failed || payload == 0 || payload > kMaxPayload) return lost("its payload cannot be told");
-  handles_->stream = arv_camera_create_stream(handles_->camera, nullptr, nullptr, failed);
+  handles_->stream = arv_camera_create_stream(handles_->camera, nullptr, nullptr, failed.out());
   if (failed || handles_->stream == nullptr) return lost("no stream");
   if (ARV_IS_GV_STREAM(handles_->stream))  // Aravis' own choice of buffer loses frames of 640 x 480 already
     g_object_set(handles_->stream, "socket-buffer", ARV_GV_STREAM_SOCKET_BUFFER_FIXED, "socket-buffer-size", options.socket_buffer_bytes, nullptr);
   for (int i = 0; i < kBuffers; ++i) arv_stream_push_buffer(handles_->stream, arv_buffer_new(payload, nullptr));
   handles_->lost_signal = g_signal_connect(arv_camera_get_device(handles_->camera), "control-lost",
                                            G_CALLBACK(+[](ArvDevice*, Handles* handles) { handles->lost = true; }), handles_.get());
-  arv_camera_start_acquisition(handles_->camera, failed);
+  arv_camera_start_acquisition(handles_->camera, failed.out());
   if (failed) return lost("it does not start");
   return {};
 }

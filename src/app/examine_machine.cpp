@@ -83,7 +83,9 @@ class Examination {
   }
 
   void kernel_driver() {
-    const bool loaded = ("\n" + read(root_ / "proc/modules")).find("\ngspca_kinect ") != std::string::npos;
+    std::string modules("\n");
+    modules += read(root_ / "proc/modules");
+    const bool loaded = modules.find("\ngspca_kinect ") != std::string::npos;
     if (!loaded) return add("kernel driver", Level::kOk, "gspca_kinect, which takes a Kinect's camera away, is not loaded");
     add("kernel driver", Level::kProblem, "gspca_kinect is loaded and takes a Kinect's camera away", "echo 'blacklist gspca_kinect' > /etc/modprobe.d/gfp.conf && modprobe -r gspca_kinect");
   }

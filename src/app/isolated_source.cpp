@@ -168,7 +168,7 @@ tl::unexpected<Error> IsolatedSource::ended() {
 Result<Frame> IsolatedSource::grab(std::chrono::milliseconds timeout) {
   if (process_ < 0) return failure(ErrorCode::kDeviceLost, "the driver's process is not running");
   const double period_s = info_.rate_hz > 0 ? 1 / info_.rate_hz : 1.0 / 30;
-  const Nanoseconds silence = std::chrono::duration_cast<Nanoseconds>(std::chrono::duration<double>(3 * period_s + 0.5));
+  const Nanoseconds silence = std::chrono::duration_cast<Nanoseconds>(std::chrono::duration<double>(sensor_.source.hang_s > 0 ? sensor_.source.hang_s : 3 * period_s + 0.5));
   const Nanoseconds deadline = monotonic_now() + timeout;
   while (true) {
     const Nanoseconds now = monotonic_now();

@@ -14,7 +14,7 @@ namespace gfp {
 ///     driver process: source -> FrameRing (shared memory), a packet a frame -> this process: grab() copies the frame out
 ///
 /// grab() errors besides the driver's own: kDeviceLost, beginning with `crash:` (the process ended) or `hang:` (it said nothing for three frame periods
-/// and half a second, and was killed). run_source() then opens anew, which starts a new process. open() errors: the driver's, kIo.
+/// and half a second, or `source.hang_s`, and was killed). run_source() then opens anew, which starts a new process. open() errors: the driver's, kIo.
 /// `program`: gfpd; empty: this one. `info`: what the source says of itself.
 std::unique_ptr<FrameSource> make_isolated_source(SensorConfig sensor, SourceInfo info, const std::filesystem::path& program = {});
 

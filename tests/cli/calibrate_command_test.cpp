@@ -14,8 +14,8 @@ std::string pairs() {
     if (i == 10) continue;  // there is none
     char number[8];
     std::snprintf(number, sizeof(number), "%02d.jpg", i);
-    left += " " + (folder / (std::string("left") + number)).string();
-    right += " " + (folder / (std::string("right") + number)).string();
+    left.append(" ").append((folder / std::string("left").append(number)).string());
+    right.append(" ").append((folder / std::string("right").append(number)).string());
   }
   return left + right;
 }

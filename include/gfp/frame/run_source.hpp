@@ -40,6 +40,7 @@ struct SourceStatus {
 struct SourceOptions {
   double grab_timeout_s = 0.5;    ///< Also bounds how long stopping takes.
   int stalls_before_reopen = 6;   ///< So many fruitless grabs in a row mean a stuck device: it is closed and opened again.
+  double hang_s = 0;              ///< With `isolation: process`: silent for so long, the process hangs; 0: three frame periods and half a second.
   BackoffOptions reconnect;
   FrameHealthOptions health;
 };
@@ -48,6 +49,7 @@ template <class Visitor>
 void visit_fields(SourceOptions& o, Visitor&& field) {
   field("grab_timeout_s", o.grab_timeout_s, 0.001, 60.0);
   field("stalls_before_reopen", o.stalls_before_reopen, 1, 1'000'000);
+  field("hang_s", o.hang_s, 0.0, 60.0);
   field.section("reconnect", o.reconnect);
   field.section("health", o.health);
 }
