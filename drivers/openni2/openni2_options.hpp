@@ -19,7 +19,7 @@ struct OpenNi2Options {
   double rate_hz = 30;
   bool fast = false;                 ///< A file: as fast as frames are taken, instead of in its own time.
   std::uint64_t first_frame = 0;     ///< A file: so many frames are passed over (OpenNI2's own seeking crashes).
-  std::string record;                ///< Also records what is delivered, losslessly, into this .oni file.
+  std::string record;                ///< Also records into this .oni file, losslessly: whatever is delivered is in it.
   bool frame_time = false;           ///< Deterministic mode: the host stamps are the sensor's, no clock is read.
   std::optional<CameraFile> camera;  ///< Empty: from the stream's fields of view.
   SensorNoise noise;

@@ -9,18 +9,27 @@
 #include <cstring>
 #include <filesystem>
 #include <optional>
+#include <thread>
 #include <utility>
 
+#include "gfp/frame/pacer.hpp"
+#include "openni2/oni_records.hpp"
 #include "openni2/openni2_api.hpp"
 
-// open: library -> device -> streams -> (recorder) -> start
+// open: library -> device -> streams -> (recorder) -> start (-> the recorder is seen to record)
 // grab: waits for either stream; a colour frame is kept, a depth frame is returned with it
 // A disconnection is told on a thread of OpenNI2's own, through `lost_`.
+//
+// OpenNI2 keeps one frame a stream and replaces it with the next. That is right for a device. A file is played in its manual mode, where each wait asks
+// for one frame, and waits until it comes: a wait that is given up and begun anew asks for two, of which a busy machine loses one. The rhythm is ours.
 
 namespace gfp {
 namespace {
 
 constexpr Nanoseconds kMaxColorLag = std::chrono::milliseconds(50);
+constexpr int kSlice_ms = 50;            // a disconnection does not wake a wait
+constexpr int kFilePatience_ms = 10'000; // a file's frame is there once it is decoded
+constexpr Nanoseconds kRecorderPatience = std::chrono::seconds(10);
 
 bool is_file(const std::string& uri) { return uri.ends_with(".oni"); }
 
@@ -77,6 +86,9 @@ class OpenNi2Source final : public FrameSource {
   Result<void> take_camera();
   Result<void> start();
   Result<void> record();
+  Result<void> see_it_record();
+  void drop_what_waits();
+  Result<void> fetch(Nanoseconds deadline);
   Result<std::optional<Frame>> read(Stream& stream);
   Frame make_frame(Image<std::uint16_t> depth, std::uint64_t timestamp_us);
   template <class Value>
@@ -100,6 +112,10 @@ class OpenNi2Source final : public FrameSource {
   std::atomic<bool> lost_{false}, ended_{false};
   std::optional<std::uint64_t> frames_left_;  ///< Of a file.
   std::uint64_t to_skip_ = 0;
+  std::optional<int> last_index_;            ///< Of the last depth frame, as the file counts.
+  std::uint64_t lost_before_next_ = 0;       ///< Frames of a file.
+  std::optional<Frame> next_;                ///< Read, not due yet.
+  Pacer pacer_;
   std::optional<std::uint64_t> first_us_;
   Image<Rgb8> last_color_;
   std::optional<std::uint64_t> color_us_;
@@ -144,9 +160,9 @@ Result<void> OpenNi2Source::open_device() {
   OniDeviceCallbacks callbacks{connected, disconnected, state_changed};
   api_->RegisterDeviceCallbacks(&callbacks, this, &callbacks_);
   if (!is_file(options_.uri)) return {};
-  // -1: every frame waits until it is read. No repeat, else the recording never ends.
+  // -1: every frame waits until it is asked for. No repeat, else the recording never ends.
   const OniBool repeat = FALSE;
-  const float speed = options_.fast ? -1.0F : 1.0F;
+  const float speed = -1.0F;
   api_->DeviceSetProperty(device_, ONI_DEVICE_PROPERTY_PLAYBACK_REPEAT_ENABLED, &repeat, sizeof(repeat));
   api_->DeviceSetProperty(device_, ONI_DEVICE_PROPERTY_PLAYBACK_SPEED, &speed, sizeof(speed));
   return {};
@@ -208,13 +224,37 @@ Result<void> OpenNi2Source::start() {
   to_skip_ = is_file(options_.uri) ? options_.first_frame : 0;
   first_us_.reset();
   color_us_.reset();
+  last_index_.reset();
+  next_.reset();
+  pacer_.restart();
   session_offset_ = last_stamp_ + Nanoseconds(1);
   last_color_ = Image<Rgb8>(color_.mode.resolutionX, color_.mode.resolutionY);
   if (auto recording = record(); !recording) return recording;
+  if (recorder_ != nullptr && api_->RecorderStart(recorder_) != ONI_STATUS_OK) return failure(ErrorCode::kIo, fmt::format("{}: {}", options_.record, api_->why()));
   for (const Stream* stream : {&depth_, &color_})
     if (stream->handle != nullptr && api_->StreamStart(stream->handle) != ONI_STATUS_OK) return failure(ErrorCode::kDeviceLost, fmt::format("{}: cannot be started: {}", device_uri_, api_->why()));
-  if (recorder_ != nullptr && api_->RecorderStart(recorder_) != ONI_STATUS_OK) return failure(ErrorCode::kIo, fmt::format("{}: {}", options_.record, api_->why()));
+  return recorder_ != nullptr ? see_it_record() : Result<void>{};
+}
+
+/// The recorder starts on a thread of its own, some time after it was told to, and says nothing: its file does. From its first frame on it takes every one,
+/// so what came before that is let go.
+Result<void> OpenNi2Source::see_it_record() {
+  const Nanoseconds deadline = monotonic_now() + kRecorderPatience;
+  while (!oni_file_has_frames(options_.record)) {
+    if (monotonic_now() > deadline) return failure(ErrorCode::kDeviceLost, fmt::format("openni2.record = {}: no frame to record within 10 s", options_.record));
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  drop_what_waits();
   return {};
+}
+
+void OpenNi2Source::drop_what_waits() {
+  for (Stream* stream : {&depth_, &color_}) {
+    int ready = -1;
+    OniFrame* frame = nullptr;
+    if (stream->handle == nullptr || api_->WaitForAnyStream(&stream->handle, 1, &ready, ONI_TIMEOUT_NONE) != ONI_STATUS_OK) continue;
+    if (api_->StreamReadFrame(stream->handle, &frame) == ONI_STATUS_OK && frame != nullptr) api_->FrameRelease(frame);
+  }
 }
 
 Result<void> OpenNi2Source::record() {
@@ -233,24 +273,38 @@ Result<void> OpenNi2Source::record() {
 Result<Frame> OpenNi2Source::grab(std::chrono::milliseconds timeout) {
   if (device_ == nullptr) return failure(ErrorCode::kDeviceLost, "the device is not open");
   const Nanoseconds deadline = monotonic_now() + timeout;
-  std::array<OniStreamHandle, 2> streams{depth_.handle, color_.handle};
+  if (!next_)
+    if (const auto fetched = fetch(deadline); !fetched) return tl::unexpected<Error>(fetched.error());
+  const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(std::max(Nanoseconds::zero(), deadline - monotonic_now()));
+  if (is_file(options_.uri) && !options_.fast && !pacer_.wait_until_due(next_->stamps.sensor, left)) return failure(ErrorCode::kTimeout, fmt::format("the next frame is not due within {} ms", timeout.count()));
+  Frame frame = *std::exchange(next_, std::nullopt);
+  frame.stamps.monotonic = options_.frame_time ? frame.stamps.sensor : monotonic_now();
+  frame.stamps.realtime = options_.frame_time ? frame.stamps.sensor : realtime_now();
+  return frame;
+}
+
+/// Waits for the next depth frame and puts it into `next_`.
+Result<void> OpenNi2Source::fetch(Nanoseconds deadline) {
+  std::array<OniStreamHandle, 2> streams{color_.handle, depth_.handle};  // of one instant, colour comes first: it belongs to this depth
+  const int first = color_.handle != nullptr ? 0 : 1;
   while (true) {
     if (lost_) return failure(ErrorCode::kDeviceLost, fmt::format("{} is gone", device_uri_));
     if (frames_left_ == 0U) return failure(ErrorCode::kEndOfStream, "the recording has come to its end");
-    const auto left_ms = std::chrono::duration_cast<std::chrono::milliseconds>(deadline - monotonic_now()).count();
-    if (left_ms <= 0) return failure(ErrorCode::kTimeout, fmt::format("no depth frame within {} ms", timeout.count()));
-    int ready = -1;
     const bool at_end = ended_;
-    // In slices: a disconnection does not wake the wait.
-    const auto status = api_->WaitForAnyStream(streams.data(), color_.handle != nullptr ? 2 : 1, &ready, static_cast<int>(std::min<std::int64_t>(left_ms, 50)));
+    const auto left_ms = std::chrono::duration_cast<std::chrono::milliseconds>(deadline - monotonic_now()).count();
+    if (left_ms <= 0 && !is_file(options_.uri)) return failure(ErrorCode::kTimeout, "no depth frame in time");
+    const int wait_ms = at_end ? ONI_TIMEOUT_NONE : is_file(options_.uri) ? kFilePatience_ms : static_cast<int>(std::min<std::int64_t>(left_ms, kSlice_ms));
+    int ready = -1;
+    const auto status = api_->WaitForAnyStream(&streams[static_cast<std::size_t>(first)], 2 - first, &ready, wait_ms);
     if (status == ONI_STATUS_TIME_OUT && at_end) return failure(ErrorCode::kEndOfStream, "the recording has come to its end before the frames it promised");
     if (status == ONI_STATUS_TIME_OUT) continue;
     if (status != ONI_STATUS_OK) return failure(ErrorCode::kDeviceLost, fmt::format("{}: {}", device_uri_, api_->why()));
-    int newer = -1;  // where both are ready, colour first: it may belong to this depth
-    const bool color_too = ready == 0 && color_.handle != nullptr && api_->WaitForAnyStream(&streams[1], 1, &newer, ONI_TIMEOUT_NONE) == ONI_STATUS_OK;
-    auto frame = read(ready == 0 && !color_too ? depth_ : color_);
+    auto frame = read(first + ready == 0 ? color_ : depth_);
     if (!frame) return tl::unexpected<Error>(frame.error());
-    if (*frame) return std::move(**frame);
+    if (!*frame) continue;
+    next_ = std::move(**frame);
+    if (const auto lost = std::exchange(lost_before_next_, 0); lost > 0) return failure(ErrorCode::kCorruptFrame, fmt::format("{}: OpenNI2 lost {} frames", device_uri_, lost));
+    return {};
   }
 }
 
@@ -263,8 +317,10 @@ Result<std::optional<Frame>> OpenNi2Source::read(Stream& stream) {
     if (copy_pixels(*raw, stream.mirrored, last_color_)) color_us_ = frame->timestamp;
     return std::nullopt;
   }
-  if (frames_left_) --*frames_left_;
-  if (to_skip_ > 0) return --to_skip_, std::nullopt;
+  lost_before_next_ = is_file(options_.uri) && last_index_ ? static_cast<std::uint64_t>(std::max(0, frame->frameIndex - *last_index_ - 1)) : 0;
+  last_index_ = frame->frameIndex;
+  if (frames_left_) *frames_left_ -= std::min(*frames_left_, 1 + lost_before_next_);
+  if (to_skip_ > 0) return to_skip_ -= std::min(to_skip_, 1 + lost_before_next_), std::nullopt;
   Image<std::uint16_t> depth(stream.mode.resolutionX, stream.mode.resolutionY);
   if (!copy_pixels(*raw, stream.mirrored, depth))
     return failure(ErrorCode::kCorruptFrame, fmt::format("{}: a depth frame of {} x {}, expected {} x {}", device_uri_, frame->width, frame->height, depth.width, depth.height));
@@ -278,7 +334,7 @@ Frame OpenNi2Source::make_frame(Image<std::uint16_t> depth, std::uint64_t timest
   Frame frame;
   frame.sensor = options_.sensor;
   frame.sequence = sequence_++;
-  frame.stamps = {last_stamp_, options_.frame_time ? last_stamp_ : monotonic_now(), options_.frame_time ? last_stamp_ : realtime_now()};
+  frame.stamps.sensor = last_stamp_;
   frame.depth = {std::move(depth), 0.001};
   frame.camera = camera_;
   frame.noise = options_.noise;

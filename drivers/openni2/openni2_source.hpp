@@ -13,9 +13,10 @@ namespace gfp {
 ///
 /// Depth in whole millimetres; where the device can, depth is registered to colour, and the camera then is the colour camera's as
 /// far as OpenNI2 tells it: the fields of view. Mirrored streams are turned back. Colour is the latest within 50 ms.
-/// A file delivers as many frames as it says it has, from `first_frame` on, fewer only where it ends before.
+/// A file delivers every frame it says it has, from `first_frame` on, fewer only where it ends before; decoding one may outlast a grab's timeout.
+/// With `record`, open() returns when the recorder records.
 /// open() errors: kDeviceLost (no such device), kUnsupported (no library), kNotFound and kCorruptData (a file), kInvalidArgument.
-/// grab() errors: kTimeout, kDeviceLost, kCorruptFrame (of another size than the stream's), kEndOfStream.
+/// grab() errors: kTimeout, kDeviceLost, kCorruptFrame (of another size than the stream's; frames of a file are missing), kEndOfStream.
 std::unique_ptr<FrameSource> make_openni2_source(OpenNi2Options options);
 
 struct OpenNi2Device {

@@ -3,8 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <optional>
 
 #include "gfp/frame/run_source.hpp"
 #include "synthetic/synthetic_source.hpp"
@@ -67,50 +69,100 @@ TEST(OpenNi2, DeliversTheSyntheticSourceLive) {
   EXPECT_EQ(source->grab(1ms).error().code, ErrorCode::kDeviceLost);
 }
 
-TEST(OpenNi2, RecordsAndReplaysWithoutLoss) {
+/// OpenNI2's encoder writes what is left at a frame's end in the wrong order, which moves up to its last 31 pixels by some table steps (2.2.0.33).
+bool same_pictures(const Frame& a, const Frame& b) {
+  const auto &left = a.depth.pixels.pixels, &right = b.depth.pixels.pixels;
+  return left.size() == right.size() && std::equal(left.begin(), left.end() - 31, right.begin());
+}
+
+/// All frames of a recording, as fast as they come.
+std::vector<Frame> replay(const fs::path& file) {
+  OpenNi2Options options = options_for(file.string());
+  options.fast = options.frame_time = true;
+  const auto player = make_openni2_source(options);
+  EXPECT_TRUE(player->info().finite);
+  const auto opened = player->open();
+  EXPECT_TRUE(opened) << opened.error().what;
+  std::vector<Frame> frames;
+  auto frame = player->grab(10s);
+  for (; frame; frame = player->grab(10s)) frames.push_back(std::move(*frame));
+  EXPECT_EQ(frame.error().code, ErrorCode::kEndOfStream) << frame.error().what;
+  return frames;
+}
+
+// A live sensor's frames may be missed by a busy machine. What was delivered while it was recorded is in the recording, in its order and with its distances
+// in time, however often that is played.
+TEST(OpenNi2, WhatWasDeliveredIsInTheRecording) {
   const fs::path file = fs::path(::testing::TempDir()) / "openni2_replay.oni";
   fs::remove(file);
   std::vector<Frame> live;
   {
-    OpenNi2Options options = options_for("gfp-synthetic:rate_hz=10");
+    OpenNi2Options options = options_for("gfp-synthetic:rate_hz=20");
     options.record = file.string();
     const auto source = make_openni2_source(options);
     const auto opened = source->open();
     ASSERT_TRUE(opened) << opened.error().what;
-    for (int i = 0; i < 4; ++i) {
+    for (int i = 0; i < 8; ++i) {
       auto frame = source->grab(10s);
       ASSERT_TRUE(frame) << frame.error().what;
       live.push_back(std::move(*frame));
     }
   }
-  OpenNi2Options options = options_for(file.string());
-  options.fast = options.frame_time = true;
-  const auto player = make_openni2_source(options);
-  ASSERT_TRUE(player->info().finite);
-  std::vector<Frame> replayed;
-  for (int pass = 0; pass < 2; ++pass) {
-    const auto opened = player->open();
-    ASSERT_TRUE(opened) << opened.error().what;
-    replayed.clear();
-    auto frame = player->grab(10s);
-    for (; frame; frame = player->grab(10s)) replayed.push_back(std::move(*frame));
-    ASSERT_EQ(frame.error().code, ErrorCode::kEndOfStream) << frame.error().what;
-    ASSERT_GE(replayed.size(), 3U);
-    player->close();
+  const std::vector<Frame> replayed = replay(file), again = replay(file);
+  ASSERT_EQ(again.size(), replayed.size());
+  for (std::size_t i = 0; i < again.size(); ++i) EXPECT_EQ(again[i].depth.pixels.pixels, replayed[i].depth.pixels.pixels) << "frame " << i;
+  auto at = replayed.begin();
+  std::optional<Nanoseconds> shift;
+  for (const Frame& frame : live) {
+    at = std::find_if(at, replayed.end(), [&](const Frame& candidate) { return same_pictures(candidate, frame); });
+    ASSERT_NE(at, replayed.end()) << "frame " << frame.sequence << " of " << live.size() << " was delivered, but is not in the recording of " << replayed.size();
+    EXPECT_EQ(at->stamps.monotonic, at->stamps.sensor);
+    EXPECT_EQ(at->color.pixels.size(), 640U * 480U);
+    shift = shift.value_or(at->stamps.sensor - frame.stamps.sensor);
+    EXPECT_EQ(at->stamps.sensor - frame.stamps.sensor, *shift) << "frame " << frame.sequence;
   }
-  std::size_t same = 0;
-  for (const Frame& a : live)
-    for (const Frame& b : replayed) same += a.depth.pixels.pixels == b.depth.pixels.pixels ? 1 : 0;
-  EXPECT_GE(same, 3U);
   EXPECT_NEAR(replayed[0].camera.fx, 525, 0.01);
-  EXPECT_EQ(replayed[1].stamps.monotonic, replayed[1].stamps.sensor);
 
+  OpenNi2Options options = options_for(file.string());
+  options.fast = true;
   options.first_frame = 2;
   const auto later = make_openni2_source(options);
   ASSERT_TRUE(later->open());
   const auto frame = later->grab(10s);
   ASSERT_TRUE(frame) << frame.error().what;
   EXPECT_EQ(frame->depth.pixels.pixels, replayed[2].depth.pixels.pixels) << "our own index";
+  fs::remove(file);
+}
+
+// In its own time a recording loses nothing either, and its rhythm is the recorded one.
+TEST(OpenNi2, ARecordingPlayedInItsOwnTimeIsComplete) {
+  const fs::path file = fs::path(::testing::TempDir()) / "openni2_paced.oni";
+  fs::remove(file);
+  {
+    OpenNi2Options options = options_for("gfp-synthetic:rate_hz=20");
+    options.record = file.string();
+    const auto source = make_openni2_source(options);
+    ASSERT_TRUE(source->open());
+    for (int i = 0; i < 4; ++i) ASSERT_TRUE(source->grab(10s));
+  }
+  const std::vector<Frame> all = replay(file);
+  const auto player = make_openni2_source(options_for(file.string()));
+  ASSERT_TRUE(player->open());
+  std::size_t frames = 0, not_due = 0;
+  Nanoseconds first{};
+  while (frames < all.size()) {
+    const auto frame = player->grab(10ms);
+    if (!frame) {
+      ASSERT_EQ(frame.error().code, ErrorCode::kTimeout) << frame.error().what;
+      ++not_due;
+      continue;
+    }
+    EXPECT_EQ(frame->depth.pixels.pixels, all[frames].depth.pixels.pixels) << "frame " << frames;
+    if (frames++ == 0) first = frame->stamps.monotonic - frame->stamps.sensor;
+    EXPECT_GE(frame->stamps.monotonic - frame->stamps.sensor, first) << "no frame comes before its time";
+  }
+  EXPECT_GE(not_due, 1U);
+  EXPECT_EQ(player->grab(1s).error().code, ErrorCode::kEndOfStream);
   fs::remove(file);
 }
 
