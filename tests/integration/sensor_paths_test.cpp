@@ -1,4 +1,5 @@
-// One synthetic scene through every way that a Kinect's frames may take: the same objects come out.
+// One synthetic scene through every way that a sensor's frames may take: the same objects come out. Frames of the scene differ by their noise, so each is
+// compared with the same frame taken directly.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -27,12 +28,12 @@ namespace fs = std::filesystem;
 constexpr std::uint64_t kSeed = 4;
 constexpr int kObjects = 3;
 
-SyntheticOptions scene_options() {
+SyntheticOptions scene_options(std::uint64_t frames = 1) {
   SyntheticOptions options;
   options.seed = kSeed;
   options.table.objects = kObjects;
   options.rate_hz = 0;
-  options.frames = 1;
+  options.frames = frames;
   options.frame_time = true;
   return options;
 }
@@ -96,13 +97,22 @@ class SensorPaths : public ::testing::Test {
     return seen;
   }
 
-  static void expect_same_objects(const Frame& frame, const char* path) {
-    const Scene scene = scene_of(frame);
-    const std::vector<Seen> seen = compare(scene);
+  static void expect_same_objects(const Frame& frame, const std::vector<Seen>& direct, const char* path) {
+    const std::vector<Seen> seen = compare(scene_of(frame));
     for (std::size_t i = 0; i < seen.size(); ++i) {
-      EXPECT_EQ(seen[i].class_name, (*direct_)[i].class_name) << path << ", object " << i;
-      EXPECT_NEAR(seen[i].iou_filled, (*direct_)[i].iou_filled, 0.03) << path << ", object " << i;
+      EXPECT_EQ(seen[i].class_name, direct[i].class_name) << path << ", object " << i;
+      EXPECT_NEAR(seen[i].iou_filled, direct[i].iou_filled, 0.03) << path << ", object " << i;
+      std::printf("%s: object %zu is a %s, IoU %.3f (direct: %s, %.3f)\n", path, i, seen[i].class_name.c_str(), seen[i].iou_filled, direct[i].class_name.c_str(), direct[i].iou_filled);
     }
+  }
+
+  /// The same frame of the synthetic source: a device may have begun before it was listened to. Empty where there is none. The last 31 pixels of an .oni are
+  /// not to be trusted.
+  static Frame same_frame(const Frame& frame) {
+    SyntheticSource source(scene_options(100));
+    for (auto candidate = source.grab(10s); candidate; candidate = source.grab(10s))
+      if (std::equal(frame.depth.pixels.pixels.begin(), frame.depth.pixels.pixels.end() - 31, candidate->depth.pixels.pixels.begin())) return std::move(*candidate);
+    return {};
   }
 
   fs::path temporary(const char* name) const { return fs::path(::testing::TempDir()) / name; }
@@ -125,7 +135,7 @@ TEST_F(SensorPaths, FakenectFolder) {
   options.camera = CameraFile{default_kinect_camera(), {}, Transform::Identity()};
   const auto input = open_input(folder.string(), options);
   ASSERT_TRUE(input) << input.error().what;
-  expect_same_objects(first_frame(*input->source), "fakenect");
+  expect_same_objects(first_frame(*input->source), *direct_, "fakenect");
   fs::remove_all(folder);
 }
 
@@ -138,14 +148,18 @@ TEST_F(SensorPaths, OpenNi2LiveAndRecorded) {
   options.record = file.string();
   {
     const auto live = make_openni2_source(options);
-    expect_same_objects(first_frame(*live), "live");
+    const Frame frame = first_frame(*live), same = same_frame(frame);
+    ASSERT_FALSE(same.depth.pixels.empty());
+    expect_same_objects(frame, compare(scene_of(same)), "live OpenNI2");
     for (int i = 0; i < 2; ++i) EXPECT_TRUE(live->grab(10s));
   }
   options.uri = file.string();
   options.record.clear();
   options.fast = options.frame_time = true;
   const auto recorded = make_openni2_source(options);
-  expect_same_objects(first_frame(*recorded), "recorded");
+  const Frame frame = first_frame(*recorded), same = same_frame(frame);
+  ASSERT_FALSE(same.depth.pixels.empty());
+  expect_same_objects(frame, compare(scene_of(same)), ".oni");
   fs::remove(file);
 }
 
