@@ -5,6 +5,7 @@ extern "C" {
 }
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <atomic>
 #include <functional>
 #include <utility>
@@ -12,7 +13,9 @@ extern "C" {
 namespace gfp {
 namespace {
 
-constexpr int kBuffers = 8;
+constexpr int kBuffers = 12, kBacklog = 4;  // beyond it the consumer is too slow, no longer delayed: it gets what is new, and Aravis keeps buffers to fill
+constexpr guint kFramePatience_us = 1'000'000;
+constexpr Nanoseconds kMaxAge = std::chrono::seconds(5);  // of a picture that waited; more is a host clock that was set
 constexpr std::uint64_t kMaxPayload = std::uint64_t{256} << 20;
 
 /// Collects Aravis' error; true in a condition where there was one.
@@ -39,6 +42,8 @@ struct AravisCamera::Handles {
   ArvStream* stream = nullptr;
   gulong lost_signal = 0;
   std::atomic<bool> lost{false};
+  bool silent = false;  ///< The last wait brought nothing.
+  std::uint64_t pictures = 0;
 };
 
 AravisCamera::AravisCamera() : handles_(std::make_unique<Handles>()) {}
@@ -47,7 +52,7 @@ AravisCamera::~AravisCamera() {
   if (handles_->camera != nullptr) {
     if (handles_->lost_signal != 0) g_signal_handler_disconnect(arv_camera_get_device(handles_->camera), handles_->lost_signal);
     Failure ignored;
-    if (!handles_->lost) arv_camera_stop_acquisition(handles_->camera, ignored.out());
+    if (!handles_->lost && !handles_->silent) arv_camera_stop_acquisition(handles_->camera, ignored.out());  // a camera that is gone would be waited for
   }
   g_clear_object(&handles_->stream);
   g_clear_object(&handles_->camera);
@@ -95,8 +100,8 @@ Result<void> AravisCamera::start(const BumblebeeOptions& options) {
   if (failed || payload == 0 || payload > kMaxPayload) return lost("its payload cannot be told");
   handles_->stream = arv_camera_create_stream(handles_->camera, nullptr, nullptr, failed.out());
   if (failed || handles_->stream == nullptr) return lost("no stream");
-  if (ARV_IS_GV_STREAM(handles_->stream))  // Aravis' own choice of buffer loses frames of 640 x 480 already
-    g_object_set(handles_->stream, "socket-buffer", ARV_GV_STREAM_SOCKET_BUFFER_FIXED, "socket-buffer-size", options.socket_buffer_bytes, nullptr);
+  if (ARV_IS_GV_STREAM(handles_->stream))  // Aravis' own choice of buffer loses frames of 640 x 480 already; its patience with a frame is less than a busy machine's pauses
+    g_object_set(handles_->stream, "socket-buffer", ARV_GV_STREAM_SOCKET_BUFFER_FIXED, "socket-buffer-size", options.socket_buffer_bytes, "frame-retention", kFramePatience_us, nullptr);
   for (int i = 0; i < kBuffers; ++i) arv_stream_push_buffer(handles_->stream, arv_buffer_new(payload, nullptr));
   handles_->lost_signal = g_signal_connect(arv_camera_get_device(handles_->camera), "control-lost",
                                            G_CALLBACK(+[](ArvDevice*, Handles* handles) { handles->lost = true; }), handles_.get());
@@ -107,16 +112,22 @@ Result<void> AravisCamera::start(const BumblebeeOptions& options) {
 
 Result<Transfer> AravisCamera::next(std::chrono::milliseconds timeout) {
   if (handles_->lost) return failure(ErrorCode::kDeviceLost, fmt::format("{}: control was lost", model_));
+  gint empty = 0, filled = 0;
+  arv_stream_get_n_buffers(handles_->stream, &empty, &filled);
+  for (int left_out = filled > kBacklog ? filled - 1 : 0; left_out > 0; --left_out, ++handles_->pictures) arv_stream_push_buffer(handles_->stream, arv_stream_pop_buffer(handles_->stream));
   ArvBuffer* const buffer = arv_stream_timeout_pop_buffer(handles_->stream, static_cast<guint64>(1000 * timeout.count()));
+  handles_->silent = buffer == nullptr;
   if (buffer == nullptr && handles_->lost) return failure(ErrorCode::kDeviceLost, fmt::format("{}: control was lost", model_));
   if (buffer == nullptr) return failure(ErrorCode::kTimeout, fmt::format("{}: no picture within {} ms", model_, timeout.count()));
+  const std::uint64_t number = handles_->pictures++;
   const std::unique_ptr<ArvBuffer, std::function<void(ArvBuffer*)>> back(buffer, [this](ArvBuffer* used) { arv_stream_push_buffer(handles_->stream, used); });
   if (const auto status = arv_buffer_get_status(buffer); status != ARV_BUFFER_STATUS_SUCCESS)
     return failure(ErrorCode::kCorruptFrame, fmt::format("{}: an incomplete picture (status {}): packets are missing", model_, static_cast<int>(status)));
   std::size_t size = 0;
   const auto* const data = static_cast<const std::uint8_t*>(arv_buffer_get_data(buffer, &size));
   Transfer transfer;
-  transfer.arrival = monotonic_now();
+  transfer.number = number;
+  transfer.arrival = monotonic_now() - std::clamp(realtime_now() - Nanoseconds(static_cast<std::int64_t>(arv_buffer_get_system_timestamp(buffer))), Nanoseconds::zero(), kMaxAge);
   transfer.device = Nanoseconds(static_cast<std::int64_t>(arv_buffer_get_timestamp(buffer)));
   transfer.width = arv_buffer_get_image_width(buffer);
   transfer.height = arv_buffer_get_image_height(buffer);

@@ -16,9 +16,10 @@ namespace gfp {
 /// One complete transfer, copied out of Aravis' buffer.
 struct Transfer {
   std::vector<std::uint8_t> bytes;
+  std::uint64_t number = 0;  ///< Of the camera's pictures since it was opened, lost ones and ones that were left out counted.
   int width = 0, height = 0, bytes_per_pixel = 1;
   Nanoseconds device{};    ///< Camera's clock.
-  Nanoseconds arrival{};   ///< Host CLOCK_MONOTONIC.
+  Nanoseconds arrival{};   ///< Of its first packet, host CLOCK_MONOTONIC.
 
   RawPicture picture() const { return {width, height, bytes_per_pixel, bytes}; }
 };
@@ -35,7 +36,8 @@ class AravisCamera {
   const std::string& model() const { return model_; }
   const std::string& serial() const { return serial_; }
 
-  /// Errors: kTimeout, kCorruptFrame (packets are missing), kDeviceLost (control of the camera was lost).
+  /// The oldest picture that waits; where more wait than a short pause explains, the newest. Errors: kTimeout, kCorruptFrame (packets are missing),
+  /// kDeviceLost (control of the camera was lost).
   Result<Transfer> next(std::chrono::milliseconds timeout);
 
  private:

@@ -20,6 +20,7 @@ struct BumblebeeOptions {
   int socket_buffer_bytes = 4 << 20;    ///< GigE: what the kernel may hold; at most net.core.rmem_max.
   bool color = true;                    ///< With a Bayer pattern.
   double pair_tolerance_s = 0.005;      ///< `two_devices`: pictures that arrive within this are one pair.
+  int threads = 2;                      ///< So many pairs are matched at a time; they come out in their order.
 };
 
 template <class Visitor>
@@ -35,6 +36,7 @@ void visit_fields(BumblebeeOptions& o, Visitor&& field) {
   field("socket_buffer_bytes", o.socket_buffer_bytes, 65'536, 1 << 30);
   field("color", o.color);
   field("pair_tolerance_s", o.pair_tolerance_s, 0.0, 1.0);
+  field("threads", o.threads, 1, 16);
 }
 
 }  // namespace gfp

@@ -4,34 +4,47 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
+#include <deque>
+#include <future>
 #include <utility>
 
 #include "bumblebee/aravis_camera.hpp"
+#include "gfp/frame/session_clock.hpp"
 
 namespace gfp {
 namespace {
 
+constexpr auto kPoll = std::chrono::milliseconds(2);            // while a pair is matched and there is room for another
+constexpr Nanoseconds kPairPatience = std::chrono::milliseconds(100);  // for the other eye of a picture that is here
+
+/// The threads: Aravis' own receives packets; grab()'s takes whole transfers and starts, for each, one that decodes and matches it.
 class BumblebeeSource final : public FrameSource {
  public:
   BumblebeeSource(BumblebeeOptions options, StereoToFrame to_frame) : options_(std::move(options)), to_frame_(std::move(to_frame)) {}
+  ~BumblebeeSource() override { close(); }
 
   SourceInfo info() const override { return {"bumblebee", "stereo camera", options_.device, options_.rate_hz, 0.2, 20.0, false, false}; }
   Result<void> open() override;
   Result<Frame> grab(std::chrono::milliseconds timeout) override;
-  void close() noexcept override { left_.reset(), right_.reset(); }
+  void close() noexcept override { matching_.clear(), left_.reset(), right_.reset(); }
 
  private:
-  Result<StereoPair> decode(const Transfer& transfer) const;
-  Result<StereoPair> pair_of_two(Transfer& left, Nanoseconds deadline);
-  Nanoseconds session_stamp(Nanoseconds device);
+  /// What belongs to one frame: one transfer, or one of each eye.
+  struct Capture {
+    Transfer left, right;
+  };
+  Result<Capture> capture(std::chrono::milliseconds timeout);
+  Result<Capture> pair_of_two(Transfer left, Nanoseconds deadline);
+  Frame stamped(const Transfer& transfer);
+  Result<StereoPair> decode(const Capture& capture) const;
+  Result<Frame> match(const Capture& capture, Frame frame) const;
 
   const BumblebeeOptions options_;
   const StereoToFrame to_frame_;
-  std::unique_ptr<AravisCamera> left_, right_;  ///< The right one of two devices only.
-  std::optional<Nanoseconds> first_device_;     ///< Since it was opened.
-  Nanoseconds session_offset_{}, last_stamp_{-1};
-  std::uint64_t sequence_ = 0;
+  std::unique_ptr<AravisCamera> left_, right_;      ///< The right one of two devices only.
+  std::deque<std::future<Result<Frame>>> matching_; ///< In the order of the pictures.
+  SessionClock clock_;
+  std::uint64_t first_of_session_ = 0, sequence_ = 0;
 };
 
 Result<void> BumblebeeSource::open() {
@@ -48,36 +61,72 @@ Result<void> BumblebeeSource::open() {
     if (!right) return close(), tl::unexpected<Error>(right.error());
     right_ = std::move(*right);
   }
-  first_device_.reset();
-  session_offset_ = last_stamp_ + Nanoseconds(1);
+  clock_.restart();
+  first_of_session_ = sequence_;
   return {};
 }
 
 Result<Frame> BumblebeeSource::grab(std::chrono::milliseconds timeout) {
   if (left_ == nullptr) return failure(ErrorCode::kDeviceLost, "the stereo camera is not open");
-  const Nanoseconds deadline = monotonic_now() + timeout;
-  auto transfer = left_->next(timeout);
-  if (!transfer) return tl::unexpected<Error>(transfer.error());
-  auto pair = right_ != nullptr ? pair_of_two(*transfer, deadline) : decode(*transfer);
-  if (!pair) return tl::unexpected<Error>(pair.error());
-  take_off_mosaic(*pair, options_.bayer, options_.color);
+  const auto deadline = std::chrono::steady_clock::now() + timeout;
+  const auto left_ms = [&] { return std::chrono::duration_cast<std::chrono::milliseconds>(std::max(deadline - std::chrono::steady_clock::now(), std::chrono::steady_clock::duration::zero())); };
+  while (true) {
+    const bool is_full = static_cast<int>(matching_.size()) >= options_.threads;
+    if (!matching_.empty() && matching_.front().wait_for(is_full ? left_ms() : std::chrono::milliseconds(0)) == std::future_status::ready) {
+      auto done = std::move(matching_.front());
+      matching_.pop_front();
+      return done.get();
+    }
+    if (left_ms() == std::chrono::milliseconds::zero() && !matching_.empty()) return failure(ErrorCode::kTimeout, fmt::format("no frame within {} ms", timeout.count()));
+    auto next = capture(matching_.empty() ? left_ms() : std::min(left_ms(), kPoll));
+    if (!next && next.error().code == ErrorCode::kTimeout && !matching_.empty()) continue;
+    if (!next) return tl::unexpected<Error>(next.error());
+    Frame frame = stamped(next->left);
+    matching_.push_back(std::async(std::launch::async, [this, taken = std::move(*next), frame = std::move(frame)]() mutable { return match(taken, std::move(frame)); }));
+  }
+}
+
+Frame BumblebeeSource::stamped(const Transfer& transfer) {
   Frame frame;
   frame.sensor = options_.sensor;
-  frame.sequence = sequence_++;
-  frame.stamps = {session_stamp(transfer->device), transfer->arrival, realtime_now() - (monotonic_now() - transfer->arrival)};
+  frame.sequence = first_of_session_ + transfer.number;  // with gaps, where pictures were lost or left out
+  sequence_ = frame.sequence + 1;
+  frame.stamps = {clock_.stamp(transfer.device), transfer.arrival, realtime_now() - (monotonic_now() - transfer.arrival)};
+  return frame;
+}
+
+Result<Frame> BumblebeeSource::match(const Capture& capture, Frame frame) const {
+  auto pair = decode(capture);
+  if (!pair) return tl::unexpected<Error>(pair.error());
+  take_off_mosaic(*pair, options_.bayer, options_.color);
   return to_frame_(*pair, frame).map([&] { return std::move(frame); });
 }
 
-Result<StereoPair> BumblebeeSource::decode(const Transfer& transfer) const { return options_.layout == "stacked" ? decode_stacked(transfer.picture()) : decode_interleaved(transfer.picture(), options_.first_byte); }
+Result<StereoPair> BumblebeeSource::decode(const Capture& capture) const {
+  if (options_.layout == "interleaved") return decode_interleaved(capture.left.picture(), options_.first_byte);
+  if (options_.layout == "stacked") return decode_stacked(capture.left.picture());
+  auto left = decode_single(capture.left.picture()), right = decode_single(capture.right.picture());
+  if (!left) return tl::unexpected<Error>(left.error());
+  if (!right) return tl::unexpected<Error>(right.error());
+  return StereoPair{std::move(*left), std::move(*right), {}};
+}
+
+Result<BumblebeeSource::Capture> BumblebeeSource::capture(std::chrono::milliseconds timeout) {
+  const Nanoseconds deadline = monotonic_now() + timeout;
+  auto left = left_->next(timeout);
+  if (!left) return tl::unexpected<Error>(left.error());
+  if (right_ == nullptr) return Capture{std::move(*left), {}};
+  return pair_of_two(std::move(*left), std::max(deadline, monotonic_now() + kPairPatience));
+}
 
 /// The eyes arrive apart: the older one is left out until both are of one instant.
-Result<StereoPair> BumblebeeSource::pair_of_two(Transfer& left, Nanoseconds deadline) {
+Result<BumblebeeSource::Capture> BumblebeeSource::pair_of_two(Transfer left, Nanoseconds deadline) {
   const auto left_ms = [&] { return std::chrono::duration_cast<std::chrono::milliseconds>(std::max(Nanoseconds::zero(), deadline - monotonic_now())); };
   auto right = right_->next(left_ms());
   while (true) {
     if (!right) return tl::unexpected<Error>(right.error());
     const double apart_s = std::chrono::duration<double>(left.arrival - right->arrival).count();
-    if (std::abs(apart_s) <= options_.pair_tolerance_s) break;
+    if (std::abs(apart_s) <= options_.pair_tolerance_s) return Capture{std::move(left), std::move(*right)};
     if (apart_s > 0) {
       right = right_->next(left_ms());
       continue;
@@ -86,17 +135,6 @@ Result<StereoPair> BumblebeeSource::pair_of_two(Transfer& left, Nanoseconds dead
     if (!next_left) return tl::unexpected<Error>(next_left.error());
     left = std::move(*next_left);
   }
-  auto left_eye = decode_single(left.picture()), right_eye = decode_single(right->picture());
-  if (!left_eye) return tl::unexpected<Error>(left_eye.error());
-  if (!right_eye) return tl::unexpected<Error>(right_eye.error());
-  return StereoPair{std::move(*left_eye), std::move(*right_eye), {}};
-}
-
-/// The camera's 64-bit clock as time of the session, strictly rising, also over a reopening.
-Nanoseconds BumblebeeSource::session_stamp(Nanoseconds device) {
-  if (!first_device_) first_device_ = device;
-  last_stamp_ = std::max(session_offset_ + (device - *first_device_), last_stamp_ + Nanoseconds(1));
-  return last_stamp_;
 }
 
 }  // namespace

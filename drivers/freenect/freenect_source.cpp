@@ -12,6 +12,7 @@
 #include "freenect/freenect_api.hpp"
 #include "freenect/register_color.hpp"
 #include "freenect/tick_clock.hpp"
+#include "gfp/frame/session_clock.hpp"
 #include "replay/fakenect.hpp"
 
 // open -> (process_events -> depth_arrived / video_arrived, on the same thread) -> grab returns what arrived
@@ -73,7 +74,7 @@ class FreenectSource final : public FrameSource {
   std::optional<std::uint32_t> depth_ticks_;  ///< Of a frame that nobody has taken yet.
   std::optional<std::uint32_t> color_ticks_;
   TickClock clock_;
-  Nanoseconds session_offset_{}, last_stamp_{-1};
+  SessionClock session_;
   std::uint64_t sequence_ = 0;
 };
 
@@ -140,7 +141,7 @@ Result<void> FreenectSource::start() {
   depth_ticks_.reset();
   color_ticks_.reset();
   clock_ = {};
-  session_offset_ = last_stamp_ + Nanoseconds(1);
+  session_.restart();
   take_calibration();
   api_->set_depth_callback(device_, depth_arrived);
   api_->set_video_callback(device_, video_arrived);
@@ -179,8 +180,7 @@ Result<Frame> FreenectSource::grab(std::chrono::milliseconds timeout) {
     if (!options_.folder.empty()) return failure(ErrorCode::kEndOfStream, "the recorded folder has come to its end");
     return failure(ErrorCode::kDeviceLost, "the Kinect is gone");
   }
-  last_stamp_ = session_offset_ + clock_.unwrap(*depth_ticks_);
-  return make_frame(last_stamp_);
+  return make_frame(session_.stamp(clock_.unwrap(*depth_ticks_)));
 }
 
 Frame FreenectSource::make_frame(Nanoseconds stamp) {

@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "gfp/frame/pacer.hpp"
+#include "gfp/frame/session_clock.hpp"
 #include "openni2/oni_records.hpp"
 #include "openni2/openni2_api.hpp"
 
@@ -116,10 +117,9 @@ class OpenNi2Source final : public FrameSource {
   std::uint64_t lost_before_next_ = 0;       ///< Frames of a file.
   std::optional<Frame> next_;                ///< Read, not due yet.
   Pacer pacer_;
-  std::optional<std::uint64_t> first_us_;
   Image<Rgb8> last_color_;
   std::optional<std::uint64_t> color_us_;
-  Nanoseconds session_offset_{}, last_stamp_{-1};
+  SessionClock clock_;
   std::uint64_t sequence_ = 0;
 };
 
@@ -222,12 +222,11 @@ Result<void> OpenNi2Source::start() {
   frames_left_.reset();
   if (is_file(options_.uri) && property(depth_, ONI_STREAM_PROPERTY_NUMBER_OF_FRAMES, frames)) frames_left_ = static_cast<std::uint64_t>(std::max(0, frames));
   to_skip_ = is_file(options_.uri) ? options_.first_frame : 0;
-  first_us_.reset();
   color_us_.reset();
   last_index_.reset();
   next_.reset();
   pacer_.restart();
-  session_offset_ = last_stamp_ + Nanoseconds(1);
+  clock_.restart();
   last_color_ = Image<Rgb8>(color_.mode.resolutionX, color_.mode.resolutionY);
   if (auto recording = record(); !recording) return recording;
   if (recorder_ != nullptr && api_->RecorderStart(recorder_) != ONI_STATUS_OK) return failure(ErrorCode::kIo, fmt::format("{}: {}", options_.record, api_->why()));
@@ -328,13 +327,10 @@ Result<std::optional<Frame>> OpenNi2Source::read(Stream& stream) {
 }
 
 Frame OpenNi2Source::make_frame(Image<std::uint16_t> depth, std::uint64_t timestamp_us) {
-  if (!first_us_) first_us_ = timestamp_us;
-  const Nanoseconds since_first = std::chrono::microseconds(static_cast<std::int64_t>(timestamp_us - *first_us_));
-  last_stamp_ = std::max(session_offset_ + since_first, last_stamp_ + Nanoseconds(1));
   Frame frame;
   frame.sensor = options_.sensor;
   frame.sequence = sequence_++;
-  frame.stamps.sensor = last_stamp_;
+  frame.stamps.sensor = clock_.stamp(std::chrono::microseconds(static_cast<std::int64_t>(timestamp_us)));
   frame.depth = {std::move(depth), 0.001};
   frame.camera = camera_;
   frame.noise = options_.noise;

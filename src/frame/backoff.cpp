@@ -15,8 +15,6 @@ double Backoff::next_s() {
   return pause;
 }
 
-bool Backoff::wait(const std::stop_token& stop) { return sleep_for(next_s(), stop); }
-
 bool sleep_for(double seconds, const std::stop_token& stop) {
   Mutex mutex;
   std::condition_variable_any never;

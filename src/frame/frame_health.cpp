@@ -10,7 +10,6 @@ namespace gfp {
 namespace {
 
 constexpr Nanoseconds kSecond = std::chrono::seconds(1);
-constexpr Nanoseconds kStep = std::chrono::milliseconds(500);  // the clocks of device and host part by this from one frame to the next: one was set
 constexpr int kSampledRow = 8;
 constexpr int kMinNeighbours = 100;
 
@@ -52,14 +51,13 @@ FrameHealth::FrameHealth(const FrameHealthOptions& options, double rate_hz, bool
 
 void FrameHealth::restart() {
   recent_.clear();
-  frames_ = 0;
-  clock_state_ = "free";
+  clock_.restart();
 }
 
 Result<void> FrameHealth::judge(const Frame& frame) {
   if (auto usable = judge_pixels(frame); !usable) return usable;
   fault_ = {};
-  judge_clock(frame.stamps);
+  host_stamp_ = clock_.to_host(frame.stamps.sensor, frame.stamps.monotonic);
   judge_times(frame.stamps);
   return {};
 }
@@ -86,36 +84,20 @@ Result<void> FrameHealth::judge_pixels(const Frame& frame) {
   return {};
 }
 
-/// A device clock may drift and its frames may be late; neither makes host and device part by half a second between two frames.
-void FrameHealth::judge_clock(const Stamps& stamps) {
-  constexpr std::uint64_t kFramesToLock = 5;
-  const Nanoseconds lag = stamps.monotonic - stamps.sensor;
-  if (!recent_.empty()) {
-    const Nanoseconds device_step = stamps.sensor - recent_.back().sensor, host_step = stamps.monotonic - recent_.back().monotonic;
-    if (device_step <= Nanoseconds::zero() || device_step - host_step > kStep) {
-      stepped_at_ = stamps.monotonic;
-      clock_state_ = "stepped";
-      least_lag_ = lag;
-    }
-  }
-  least_lag_ = frames_++ == 0 ? lag : std::min(least_lag_, lag);
-  if (clock_state_ == "free" && frames_ >= kFramesToLock) clock_state_ = "locked";
-  if (clock_state_ == "stepped" && stamps.monotonic - stepped_at_ > kSecond) clock_state_ = "locked";
-}
-
 void FrameHealth::judge_times(const Stamps& stamps) {
-  recent_.push_back(stamps);
-  while (stamps.monotonic - recent_.front().monotonic > 2 * kSecond) recent_.pop_front();
-  if (seconds(stamps.monotonic - stamps.sensor - least_lag_) > options_.max_delay_s) fault_ = fault::kDelayed;
+  const Nanoseconds now = stamps.monotonic;
+  recent_.push_back(now);
+  while (now - recent_.front() > 2 * kSecond) recent_.pop_front();
+  if (seconds(now - host_stamp_) > options_.max_delay_s) fault_ = fault::kDelayed;
   if (rate_hz_ <= 0) return;
   int gaps = 0, in_last_second = 0, gaps_in_last_second = 0;
   for (std::size_t i = 1; i < recent_.size(); ++i) {
-    const bool is_gap = seconds(recent_[i].monotonic - recent_[i - 1].monotonic) * rate_hz_ > options_.max_gap_periods, is_new = stamps.monotonic - recent_[i].monotonic < kSecond;
+    const bool is_gap = seconds(recent_[i] - recent_[i - 1]) * rate_hz_ > options_.max_gap_periods, is_new = now - recent_[i] < kSecond;
     gaps += is_gap ? 1 : 0;
     in_last_second += is_new ? 1 : 0;
     gaps_in_last_second += is_gap && is_new ? 1 : 0;
   }
-  const bool a_second_known = stamps.monotonic - recent_.front().monotonic > kSecond;
+  const bool a_second_known = now - recent_.front() > kSecond;
   const bool slow = a_second_known && in_last_second < options_.min_rate_share * rate_hz_;
   // Slow is an even trickle; with pauses between frames that come at the right pace it is intermittent.
   const bool mostly_gaps = 2 * gaps_in_last_second > in_last_second;

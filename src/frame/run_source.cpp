@@ -1,5 +1,6 @@
 #include "gfp/frame/run_source.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <memory>
 
@@ -8,6 +9,8 @@
 
 namespace gfp {
 namespace {
+
+constexpr double kAbsentPause_s = 1;  // between looks for a device that is not there: it is to be back soon after it was plugged in
 
 /// A wrong path or option stays wrong; a device that is not there may come.
 bool is_permanent(ErrorCode code) {
@@ -38,10 +41,13 @@ class Run {
   SourceStatus until_final() {
     Backoff backoff(options_.reconnect);
     while (!is_final(status_.state)) {
-      if (open()) stream(backoff);
+      const bool opened = open();
+      if (opened) stream(backoff);
       source_.close();
       // The back-off is part of being lost: a frame, not a successful open(), proves that the device is back.
-      if (!is_final(status_.state) && !backoff.wait(stop_)) change(SourceState::kStopped);
+      const bool absent = !opened && status_.last_error && fault_of(*status_.last_error) == fault::kLost;
+      const double pause_s = backoff.next_s();
+      if (!is_final(status_.state) && !sleep_for(absent ? std::min(pause_s, kAbsentPause_s) : pause_s, stop_)) change(SourceState::kStopped);
     }
     out_.close();
     return status_;
@@ -66,6 +72,7 @@ class Run {
       Result<Frame> frame = source_.grab(timeout);
       if (frame) frame = health_.judge(*frame).map([&] { return std::move(*frame); });
       if (frame) {
+        if (!source_.info().finite) frame->stamps.sensor = health_.host_stamp();
         if (!deliver(std::move(*frame))) return change(SourceState::kStopped);
         backoff.reset();
         stalls = 0;
@@ -88,7 +95,6 @@ class Run {
     if (was_lost_) ++status_.reconnects;
     was_lost_ = false;
     next_fault_ = health_.fault();
-    status_.clock_state = health_.clock_state();
     change(SourceState::kStreaming);
     return true;
   }
@@ -97,9 +103,10 @@ class Run {
     if (state == SourceState::kLost && status_.frames > 0) was_lost_ = true;
     const bool ended = state == SourceState::kEnded || state == SourceState::kStopped;
     const std::string_view fault = ended ? std::string_view() : next_fault_;
-    if (state == status_.state && fault == status_.fault) return;
+    if (state == status_.state && fault == status_.fault && status_.clock_state == health_.clock_state()) return;
     status_.state = state;
     status_.fault = fault;
+    status_.clock_state = health_.clock_state();
     if (on_change_) on_change_(status_);
   }
 

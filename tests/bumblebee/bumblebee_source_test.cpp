@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
 
 #include "bumblebee/fake/fake_bumblebee.hpp"
 #include "gfp/core/random.hpp"
@@ -30,7 +31,7 @@ std::vector<StereoPair> pictures() {
 /// A source whose frames carry nothing; the pairs are compared where they arrive.
 struct Receiver {
   std::vector<StereoPair> sent = pictures();
-  int whole = 0, damaged = 0;
+  std::atomic<int> whole{0}, damaged{0};  // pairs are matched on several threads
 
   StereoToFrame to_frame() {
     return [this](const StereoPair& pair, Frame&) -> Result<void> {

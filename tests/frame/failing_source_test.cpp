@@ -63,7 +63,7 @@ TEST(FailingSource, UnpluggedItIsOpenedUntilItIsBack) {
 TEST(FailingSource, AJumpingClockShowsInItsState) {
   const Outcome outcome = run("clock_step", 1);
   EXPECT_EQ(outcome.frames.size(), 120U);
-  EXPECT_GT(outcome.frames.back()->stamps.sensor, std::chrono::hours(1));
+  EXPECT_LT(outcome.frames.back()->stamps.sensor, std::chrono::minutes(1)) << "in host time nothing jumped";
 }
 
 TEST(FailingSource, WithoutAFailureItIsTheSourceItself) {

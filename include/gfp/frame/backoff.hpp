@@ -22,8 +22,6 @@ class Backoff {
 
   void reset();    ///< It works again: the next pause is the initial one.
   double next_s(); ///< The pause that is due now, seconds; the one after is twice as long.
-  /// Pauses for next_s(). False at once when stop is requested.
-  bool wait(const std::stop_token& stop);
 
  private:
   BackoffOptions options_;

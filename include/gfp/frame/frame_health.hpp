@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "gfp/core/error.hpp"
+#include "gfp/frame/clock_fit.hpp"
 #include "gfp/frame/frame.hpp"
 
 namespace gfp {
@@ -21,7 +22,7 @@ struct FrameHealthOptions {
   double max_rough = 0.6;          ///< Share of neighbouring readings that differ by over a tenth; above it the frame is garbage. Real frames: below 0.1.
   double min_rate_share = 0.5;     ///< Of the nominal rate, over the last second; below it the source is slow.
   double max_gap_periods = 3.5;    ///< A longer pause between two frames is a gap; two in two seconds mean an intermittent source.
-  double max_delay_s = 0.25;       ///< Later than the source's quickest frames by this: delayed.
+  double max_delay_s = 0.25;       ///< Later than the source's quickest frames of the last ten minutes by this: delayed.
 };
 
 template <class Visitor>
@@ -44,25 +45,25 @@ class FrameHealth {
   Result<void> judge(const Frame& frame);
   /// Of the refused frame, or of the source as its last second shows it; empty: none.
   std::string_view fault() const { return fault_; }
-  /// Device clock against the host's: `free` (too few frames yet), `locked`, or `stepped` (it jumped within the last second).
-  std::string_view clock_state() const { return clock_state_; }
+  /// Device clock against the host's, as ClockFit says it.
+  std::string_view clock_state() const { return clock_.state(); }
+  /// When the frame judged last was taken, host time.
+  Nanoseconds host_stamp() const { return host_stamp_; }
   void restart();  ///< The source was opened anew: its times have nothing to do with those before.
 
  private:
   Result<void> refuse(std::string_view fault, std::string what);
   Result<void> judge_pixels(const Frame& frame);
   void judge_times(const Stamps& stamps);
-  void judge_clock(const Stamps& stamps);
 
   FrameHealthOptions options_;
   double rate_hz_;
-  std::string_view fault_, clock_state_ = "free";
+  std::string_view fault_;
   std::uint64_t last_hash_ = 0;
   int repeats_ = 0;
-  std::deque<Stamps> recent_;   ///< Of the last two seconds.
-  Nanoseconds least_lag_{};     ///< Smallest host minus device time of the session.
-  Nanoseconds stepped_at_{};
-  std::uint64_t frames_ = 0;
+  std::deque<Nanoseconds> recent_;  ///< Arrivals of the last two seconds.
+  ClockFit clock_;
+  Nanoseconds host_stamp_{};
 };
 
 }  // namespace gfp

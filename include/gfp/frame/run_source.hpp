@@ -34,14 +34,14 @@ struct SourceStatus {
   std::uint64_t reconnects = 0;      ///< Times that frames came again after the source had been lost.
   std::optional<Error> last_error;   ///< The latest of any kind; stays after recovery.
   std::string_view fault;            ///< What is wrong now, by a name of gfp::fault; empty: nothing.
-  std::string_view clock_state = "free";  ///< As FrameHealth says it.
+  std::string_view clock_state = "free";  ///< As ClockFit says it.
 };
 
 struct SourceOptions {
   double grab_timeout_s = 0.5;    ///< Also bounds how long stopping takes.
   int stalls_before_reopen = 6;   ///< So many fruitless grabs in a row mean a stuck device: it is closed and opened again.
   double hang_s = 0;              ///< With `isolation: process`: silent for so long, the process hangs; 0: three frame periods and half a second.
-  BackoffOptions reconnect;
+  BackoffOptions reconnect;       ///< Of what fails again and again; a device that is not there at all is looked for every second at least.
   FrameHealthOptions health;
 };
 
@@ -59,7 +59,9 @@ void visit_fields(SourceOptions& o, Visitor&& field) {
 ///
 /// Frames that FrameHealth refuses count as corrupt and are not handed over.
 ///
-/// `on_change` is called on this thread once per change of state or fault (not per frame), after the status was updated.
+/// The sensor stamps of what is no recording become host time (ClockFit), so that the frames of several sensors can be ordered.
+///
+/// `on_change` is called on this thread once per change of state, fault or clock state (not per frame), after the status was updated.
 /// grab(): kTimeout and damage of one frame (any other code) are counted, kDeviceLost reopens, kEndOfStream ends.
 /// open(): kInvalidArgument, kUnsupported, kCorruptData and kTooLarge end as kFailed; anything else is tried again.
 SourceStatus run_source(FrameSource& source, LatestSlot<FramePtr>& out, const SourceOptions& options,

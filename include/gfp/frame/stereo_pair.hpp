@@ -16,7 +16,7 @@ struct StereoPair {
 };
 
 /// Fills depth, colour, camera and noise of a frame from a pair. What a stereo driver is given, since it knows no matcher.
-/// Errors: kCorruptFrame (the pair's size is not the calibration's).
+/// Called for several pairs at a time. Errors: kCorruptFrame (the pair's size is not the calibration's).
 using StereoToFrame = std::function<Result<void>(const StereoPair& pair, Frame& frame)>;
 
 }  // namespace gfp
