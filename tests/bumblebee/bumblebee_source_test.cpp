@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 
 #include "bumblebee/fake/fake_bumblebee.hpp"
 #include "gfp/core/random.hpp"
@@ -84,6 +85,37 @@ TEST(Bumblebee, AnIncompletePictureIsNeverPassedOn) {
   EXPECT_GE(corrupt, 5);
   EXPECT_GE(receiver.whole, 10);
   EXPECT_EQ(receiver.damaged, 0);
+}
+
+// Every picture of the camera is either passed on whole or counted as incomplete, however many packets are lost.
+TEST(Bumblebee, EveryPictureIsAccountedFor) {
+  const test::GigeLock lock;
+  for (const double lost_packets : {0.001, 0.005, 0.01, 0.02}) {
+    Receiver receiver;
+    FakeBumblebeeOptions lossy;
+    lossy.lost_packets = lost_packets;
+    const auto fake = FakeBumblebee::start(receiver.sent, lossy);
+    ASSERT_TRUE(fake) << fake.error().what;
+    BumblebeeOptions large = options();
+    large.packet_bytes = 8000;  // 78 packets a picture, so that some are whole at 2 %
+    const auto source = make_bumblebee_source(large, receiver.to_frame());
+    ASSERT_TRUE(source->open());
+    int incomplete = 0;
+    std::uint64_t last = 0;
+    for (int i = 0; i < 30; ++i) {
+      const auto frame = source->grab(2s);
+      incomplete += !frame && frame.error().code == ErrorCode::kCorruptFrame ? 1 : 0;
+      if (frame) last = frame->sequence;
+    }
+    source->close();
+    const int whole = receiver.whole, accounted = whole + incomplete;
+    std::printf("packets lost: %.1f %%: %llu pictures sent, %d whole, %d incomplete; expected whole: %.0f %%\n", 100 * lost_packets, static_cast<unsigned long long>((*fake)->sent()), whole, incomplete,
+                100 * std::pow(1 - lost_packets, 78 + 2));
+    EXPECT_EQ(receiver.damaged, 0);
+    EXPECT_GE(accounted, 29);
+    EXPECT_LE(static_cast<std::uint64_t>(accounted), (*fake)->sent());
+    EXPECT_LT(last, (*fake)->sent()) << "sequences count the camera's pictures";
+  }
 }
 
 TEST(Bumblebee, PluggedInAgainItGoesOn) {

@@ -5,6 +5,7 @@ extern "C" {
 }
 #include <fmt/format.h>
 
+#include <atomic>
 #include <cmath>
 #include <cstring>
 
@@ -12,7 +13,7 @@ namespace gfp {
 
 struct FakeBumblebee::Show {
   std::vector<std::vector<std::uint8_t>> pictures;  ///< Interleaved.
-  std::size_t next = 0;
+  std::atomic<std::uint64_t> next{0};
   ArvGvFakeCamera* camera = nullptr;
 };
 
@@ -40,6 +41,8 @@ std::vector<std::uint8_t> interleaved(const StereoPair& pair) {
 }  // namespace
 
 FakeBumblebee::FakeBumblebee() : show_(std::make_unique<Show>()) {}
+
+std::uint64_t FakeBumblebee::sent() const { return show_->next; }
 
 FakeBumblebee::~FakeBumblebee() { g_clear_object(&show_->camera); }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
@@ -25,6 +26,8 @@ class FakeBumblebee {
   ~FakeBumblebee();  ///< As if it were unplugged.
   FakeBumblebee(const FakeBumblebee&) = delete;
   FakeBumblebee& operator=(const FakeBumblebee&) = delete;
+
+  std::uint64_t sent() const;  ///< Pictures, whole or not. Safe from any thread.
 
   struct Show;
 
