@@ -47,13 +47,7 @@ bool overlap_in_plane(const Vector2d (&s)[3], const Vector2d (&t)[3]) {
   return !separated_by_edges_of(s, t) && !separated_by_edges_of(t, s);
 }
 
-bool coplanar_overlap(const Vector3d (&s)[3], const Vector3d (&t)[3]) {
-  Vector3d normal = (s[1] - s[0]).cross(s[2] - s[0]);
-  const double norm = normal.norm();
-  if (norm < kTolerance) return false;  // a sliver has no plane and no area to overlap with
-  normal /= norm;
-  for (const auto& p : t)
-    if (std::abs(normal.dot(p - s[0])) > 1e-9) return false;
+bool coplanar_overlap(const Vector3d (&s)[3], const Vector3d (&t)[3], const Vector3d& normal) {
   Eigen::Index drop = 0;
   normal.cwiseAbs().maxCoeff(&drop);
   const auto flat = [drop](const Vector3d& p) {
@@ -62,11 +56,35 @@ bool coplanar_overlap(const Vector3d (&s)[3], const Vector3d (&t)[3]) {
   return overlap_in_plane({flat(s[0]), flat(s[1]), flat(s[2])}, {flat(t[0]), flat(t[1]), flat(t[2])});
 }
 
-bool cross_each_other(const TriangleMesh& mesh, const Triangle& first, const Triangle& second) {
+/// Unit normals; zero for slivers, which have no plane and no area to overlap with.
+std::vector<Vector3d> plane_normals(const TriangleMesh& mesh) {
+  std::vector<Vector3d> normals;
+  normals.reserve(mesh.triangles.size());
+  for (const Triangle& t : mesh.triangles) {
+    const Vector3d& a = mesh.vertices[static_cast<std::size_t>(t[0])];
+    const Vector3d normal = (mesh.vertices[static_cast<std::size_t>(t[1])] - a).cross(mesh.vertices[static_cast<std::size_t>(t[2])] - a);
+    const double norm = normal.norm();
+    normals.push_back(norm < kTolerance ? Vector3d(Vector3d::Zero()) : Vector3d(normal / norm));
+  }
+  return normals;
+}
+
+bool cross_each_other(const TriangleMesh& mesh, const Triangle& first, const Triangle& second, const Vector3d& normal) {
+  constexpr double kOffPlane = 1e-9;
   const auto point = [&](std::int32_t v) -> const Vector3d& { return mesh.vertices[static_cast<std::size_t>(v)]; };
   const auto has = [](const Triangle& t, std::int32_t v) { return t[0] == v || t[1] == v || t[2] == v; };
-  const int shared = static_cast<int>(has(second, first[0])) + static_cast<int>(has(second, first[1])) + static_cast<int>(has(second, first[2]));
+  int shared = 0, above = 0, below = 0;
+  for (const std::int32_t v : second) {
+    if (has(first, v)) {
+      ++shared;
+      continue;
+    }
+    const double side = normal.dot(point(v) - point(first[0]));
+    above += side > kOffPlane;
+    below += side < -kOffPlane;
+  }
   if (shared == 3) return true;  // the same triangle twice
+  if (above == 3 - shared || below == 3 - shared) return false;  // all of it on one side, or touching in what they share
   const auto edges_pierce = [&](const Triangle& edges, const Triangle& face) {
     for (std::size_t k = 0; k < 3; ++k) {
       const auto p = edges[k], q = edges[(k + 1) % 3];
@@ -76,7 +94,8 @@ bool cross_each_other(const TriangleMesh& mesh, const Triangle& first, const Tri
     return false;
   };
   if (shared < 2 && (edges_pierce(first, second) || edges_pierce(second, first))) return true;
-  return coplanar_overlap({point(first[0]), point(first[1]), point(first[2])}, {point(second[0]), point(second[1]), point(second[2])});
+  if (above > 0 || below > 0 || normal.isZero()) return false;
+  return coplanar_overlap({point(first[0]), point(first[1]), point(first[2])}, {point(second[0]), point(second[1]), point(second[2])}, normal);
 }
 
 /// Counting-sorted lists of the triangles whose boxes touch each cell.
@@ -130,6 +149,7 @@ int count_self_intersections(const TriangleMesh& mesh, int limit) {
     for (const auto v : mesh.triangles[t]) boxes[t].include(mesh.vertices[static_cast<std::size_t>(v)]);
     mean_side += boxes[t].size().maxCoeff() / static_cast<double>(boxes.size());
   }
+  const std::vector<Vector3d> normals = plane_normals(mesh);
   const TriangleGrid grid(boxes, bounds(mesh.vertices), std::max(mean_side, 1e-9));
   int count = 0;
   for (std::size_t cell = 0; cell < grid.cells(); ++cell) {
@@ -140,7 +160,7 @@ int count_self_intersections(const TriangleMesh& mesh, int limit) {
         const Vector3d low = box_a.low.cwiseMax(box_b.low), high = box_a.high.cwiseMin(box_b.high);
         if ((low.array() > high.array()).any()) continue;
         if (grid.cell_of(low) != cell) continue;  // a pair that shares several cells is looked at once
-        if (!cross_each_other(mesh, mesh.triangles[static_cast<std::size_t>(*a)], mesh.triangles[static_cast<std::size_t>(*b)])) continue;
+        if (!cross_each_other(mesh, mesh.triangles[static_cast<std::size_t>(*a)], mesh.triangles[static_cast<std::size_t>(*b)], normals[static_cast<std::size_t>(*a)])) continue;
         if (++count >= limit) return count;
       }
     }

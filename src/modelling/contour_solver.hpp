@@ -1,7 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <Eigen/SparseCholesky>
+#include <Eigen/SparseCore>
 #include <memory>
 #include <vector>
 
@@ -29,7 +29,9 @@ class ContourSolver {
  private:
   double membrane_weight_, plate_weight_;
   Eigen::SparseMatrix<double> laplacian_;
-  Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor_;
+  Eigen::SparseMatrix<double> lower_;  ///< L D L^T = P matrix P^T; L without its unit diagonal.
+  Eigen::VectorXd inverse_diagonal_;
+  Eigen::VectorXi place_;              ///< P: where in the factor each vertex is.
 };
 
 /// The solver of a primitive, factored on first use and kept for the process. Safe from any thread.

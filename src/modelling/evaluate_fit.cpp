@@ -1,9 +1,11 @@
 #include "gfp/modelling/evaluate_fit.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
 #include "gfp/core/closest_point.hpp"
+#include "gfp/core/mesh.hpp"
 #include "gfp/core/raster.hpp"
 #include "gfp/memory/image_score.hpp"
 
@@ -67,6 +69,16 @@ double depth_inside(const std::vector<Eigen::Vector2d>& outline, const Eigen::Ve
   return depth;
 }
 
+/// Of points above the ground, the depth of the deepest; 0 where none is inside.
+double deepest_inside(const std::vector<Eigen::Vector2d>& outline, const std::vector<Vector3d>& points) {
+  Eigen::AlignedBox2d box;
+  for (const auto& corner : outline) box.extend(corner);
+  double deepest = 0;
+  for (const Vector3d& p : points)
+    if (box.contains(p.head<2>())) deepest = std::max(deepest, depth_inside(outline, p.head<2>()));
+  return deepest;
+}
+
 void mark_observed(const ObservedTile& tile, const DepthTile& rendered, const std::vector<Vector3d>& vertices_camera, std::vector<std::uint8_t>& states) {
   states.resize(vertices_camera.size(), 0);
   for (std::size_t i = 0; i < vertices_camera.size(); ++i) {
@@ -104,13 +116,10 @@ FitEvidence evaluate_fit(const ObjectView& view, const std::vector<Vector3d>& ve
   evidence.silhouette_iou = score.silhouette_iou;
   evidence.cost = score.cost;
   evidence.fit_similarity = fit_similarity(tile, rendered, vertices_camera, triangles);
-  const Transform T_support_camera = view.T_camera_support.inverse();
-  for (const auto& v : vertices_camera) {
-    const Vector3d p = T_support_camera * v;
-    if (view.has_support) evidence.below_support_m = std::max(evidence.below_support_m, -p.z());
-    for (const auto& outline : view.neighbour_footprints)
-      evidence.neighbour_overlap_m = std::max(evidence.neighbour_overlap_m, depth_inside(outline, p.head<2>()));
-  }
+  const auto vertices = transformed(vertices_camera, view.T_camera_support.inverse());
+  if (view.has_support)
+    for (const Vector3d& p : vertices) evidence.below_support_m = std::max(evidence.below_support_m, -p.z());
+  for (const auto& outline : view.neighbour_footprints) evidence.neighbour_overlap_m = std::max(evidence.neighbour_overlap_m, deepest_inside(outline, vertices));
   return evidence;
 }
 

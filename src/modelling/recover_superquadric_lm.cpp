@@ -23,8 +23,7 @@ struct Residuals {
 Residuals solina_residuals(const std::vector<Vector3d>& points, const Superquadric& s) {
   const double factor = std::sqrt(s.half_axes_m.prod());
   Residuals sum;
-  for (const auto& point : points) {
-    const LinearisedGauge at = linearised_gauge(s, point);
+  for (const LinearisedGauge& at : linearised_gauges(s, points)) {
     const double residual = factor * (at.value * at.value - 1);
     SuperquadricStep derivative = factor * 2 * at.value * at.derivative;
     for (int k = 0; k < 3; ++k) derivative[kLogAxes + k] += 0.5 * residual;  // of the volume factor

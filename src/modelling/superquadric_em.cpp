@@ -5,6 +5,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "gfp/core/elementary.hpp"
+#include "gfp/core/residual_rows.hpp"
+
 namespace gfp {
 namespace {
 
@@ -16,19 +19,27 @@ constexpr double kSpillLinear = 3.0;         ///< Sigmas from which a spill's co
 constexpr double kAspectSigma = 1.0;         ///< Prior of log(a_i / a_j): decides only where the data do not.
 constexpr double kEpsilonMean = 0.7, kEpsilonSigma = 0.7;  ///< Household things: between boxes and ellipsoids.
 
-/// Of all points, then of all tangents.
-using Lengths = std::vector<LinearisedLength>;
+/// Distances from the surface (first-order, as surface_distance()) of all points, then of all tangents, each a row with its derivative by a
+/// step; the normalisation by the gauge's slope is held fixed in the derivative (Gauss-Newton).
+using Lengths = ResidualRows;
 
 Superquadric on_base(Superquadric s) {
   s.pose.translation().z() = reach(s, -Vector3d::UnitZ());
   return s;
 }
 
+void add_distances(const Superquadric& s, std::span<const Vector3d> points, Lengths& lengths) {
+  for (const LinearisedGauge& at : linearised_gauges(s, points)) {
+    const std::span<double> row = lengths.add((at.value - 1) / at.slope);
+    for (std::size_t k = 0; k < row.size(); ++k) row[k] = at.derivative[static_cast<Eigen::Index>(k)] / at.slope;
+  }
+}
+
 void linearise(const SuperquadricData& problem, const Superquadric& s, Lengths& lengths) {
-  lengths.clear();
-  for (const auto& point : problem.points) lengths.push_back(linearised_distance(s, point));
+  lengths.reset(kSuperquadricParameters);
+  add_distances(s, problem.points, lengths);
   // By the envelope theorem the touching point may be held fixed along its ray while the parameters move.
-  for (const auto& ray : problem.tangents) lengths.push_back(linearised_distance(s, deepest_point(s, ray)));
+  add_distances(s, deepest_points(s, problem.tangents), lengths);
 }
 
 /// Columns: what a free parameter does to the full step. A body on its base rises with its reach downwards.
@@ -65,7 +76,7 @@ Basis free_directions(const SuperquadricData& problem, const Superquadric& s, co
 }
 
 double gaussian(double value, double sigma) {
-  return std::exp(-0.5 * value * value / (sigma * sigma)) / (sigma * std::sqrt(2 * std::numbers::pi));
+  return fast_exp(-0.5 * value * value / (sigma * sigma)) / (sigma * std::sqrt(2 * std::numbers::pi));
 }
 
 /// Widths of the Gaussian parts: points and tangents err for different reasons, so each has its own.
@@ -81,21 +92,21 @@ class Mixture {
   }
 
   Widths start(const Lengths& lengths) const {
-    const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(problem_.points.size());
-    return {median_width(lengths.begin(), middle, problem_.sigma_m), median_width(middle, lengths.end(), problem_.tangent_sigma_m)};
+    const std::size_t middle = problem_.points.size();
+    return {median_width(lengths, 0, middle, problem_.sigma_m), median_width(lengths, middle, lengths.size(), problem_.tangent_sigma_m)};
   }
 
   /// E-step: the probability that each length belongs to the surface, times its weight and divided by its variance.
   void weigh(const Lengths& lengths, const Widths& widths, std::vector<double>& weights) const {
     weights.resize(lengths.size());
     for (std::size_t i = 0; i < lengths.size(); ++i) {
-      if (spills(i, lengths[i].value)) {
+      if (spills(i, lengths.residual(i))) {
         const double sigma = problem_.tangent_sigma_m;
-        weights[i] = weight_of(i) * std::min(1.0, kSpillLinear * sigma / -lengths[i].value) / (sigma * sigma);
+        weights[i] = weight_of(i) * std::min(1.0, kSpillLinear * sigma / -lengths.residual(i)) / (sigma * sigma);
         continue;
       }
       const double width = is_point(i) ? widths.points : widths.tangents;
-      const double on = (1 - options_.outlier_share) * gaussian(lengths[i].value, width);
+      const double on = (1 - options_.outlier_share) * gaussian(lengths.residual(i), width);
       weights[i] = weight_of(i) * on / (on + options_.outlier_share / problem_.range_m) / (width * width);
     }
   }
@@ -103,8 +114,8 @@ class Mixture {
   Widths updated(const Lengths& lengths, const Widths& widths, const std::vector<double>& weights) const {
     Widths squares, total;
     for (std::size_t i = 0; i < lengths.size(); ++i) {
-      if (spills(i, lengths[i].value)) continue;
-      (is_point(i) ? squares.points : squares.tangents) += weights[i] * lengths[i].value * lengths[i].value;
+      if (spills(i, lengths.residual(i))) continue;
+      (is_point(i) ? squares.points : squares.tangents) += weights[i] * lengths.residual(i) * lengths.residual(i);
       (is_point(i) ? total.points : total.tangents) += weights[i];
     }
     const auto width = [&](double square, double sum, double floor, double before) {
@@ -117,13 +128,13 @@ class Mixture {
   double negative_log_likelihood(const Lengths& lengths, const Widths& widths) const {
     double sum = 0;
     for (std::size_t i = 0; i < lengths.size(); ++i) {
-      if (spills(i, lengths[i].value)) {
-        const double excess = -lengths[i].value / problem_.tangent_sigma_m, bend = kSpillLinear;
+      if (spills(i, lengths.residual(i))) {
+        const double excess = -lengths.residual(i) / problem_.tangent_sigma_m, bend = kSpillLinear;
         const double huber = excess < bend ? 0.5 * excess * excess : bend * (excess - 0.5 * bend);
-        sum += weight_of(i) * (huber - std::log(gaussian(0, problem_.tangent_sigma_m)));
+        sum += weight_of(i) * (huber - fast_log(gaussian(0, problem_.tangent_sigma_m)));
         continue;
       }
-      sum -= weight_of(i) * std::log((1 - options_.outlier_share) * gaussian(lengths[i].value, is_point(i) ? widths.points : widths.tangents) +
+      sum -= weight_of(i) * fast_log((1 - options_.outlier_share) * gaussian(lengths.residual(i), is_point(i) ? widths.points : widths.tangents) +
                                      options_.outlier_share / problem_.range_m);
     }
     return sum;
@@ -133,10 +144,10 @@ class Mixture {
   /// Does the body reach into a line of sight that was seen to be free? No outlier explains that away, whereas a line that the
   /// body does not reach may belong to a handle.
   bool spills(std::size_t i, double length) const { return !is_point(i) && length < 0; }
-  double median_width(Lengths::const_iterator first, Lengths::const_iterator last, double floor) const {
+  double median_width(const Lengths& lengths, std::size_t first, std::size_t last, double floor) const {
     if (first == last) return floor;
     std::vector<double> sizes;
-    for (; first != last; ++first) sizes.push_back(std::abs(first->value));
+    for (; first != last; ++first) sizes.push_back(std::abs(lengths.residual(first)));
     const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
     std::nth_element(sizes.begin(), middle, sizes.end());
     return std::clamp(1.4826 * *middle, floor, problem_.range_m);
@@ -180,27 +191,21 @@ Prior prior_of(const Superquadric& s) {
 
 double surrogate(const Lengths& lengths, const std::vector<double>& weights) {
   double sum = 0;
-  for (std::size_t i = 0; i < lengths.size(); ++i) sum += 0.5 * weights[i] * lengths[i].value * lengths[i].value;
+  for (std::size_t i = 0; i < lengths.size(); ++i) sum += 0.5 * weights[i] * lengths.residual(i) * lengths.residual(i);
   return sum;
 }
 
 struct NormalEquations {
-  Information hessian;
-  SuperquadricStep gradient;
+  Eigen::MatrixXd hessian;
+  Eigen::VectorXd gradient;
 };
 
 NormalEquations normal_equations(const Superquadric& s, const Lengths& lengths, const std::vector<double>& weights, const Prior& prior,
                                  const SuperquadricLimits& limits) {
-  NormalEquations system{prior.hessian, prior.gradient};
-  for (std::size_t i = 0; i < lengths.size(); ++i) {
-    const SuperquadricStep& j = lengths[i].derivative;
-    for (int row = 0; row < kSuperquadricParameters; ++row) {
-      const double scaled = weights[i] * j[row];
-      system.gradient[row] += scaled * lengths[i].value;
-      for (int column = 0; column <= row; ++column) system.hessian(row, column) += scaled * j[column];
-    }
-  }
-  system.hessian.triangularView<Eigen::StrictlyUpper>() = system.hessian.transpose();
+  NormalEquations system;
+  lengths.normal_equations(weights, system.hessian, system.gradient);
+  system.hessian += prior.hessian;
+  system.gradient += prior.gradient;
   // An exponent at its limit that is pushed outwards does not take part.
   for (const auto& [index, epsilon] : {std::pair<int, double>(kEpsilon1, s.epsilon1), {kEpsilon2, s.epsilon2}}) {
     const bool held = (epsilon <= limits.min_epsilon && system.gradient[index] > 0) || (epsilon >= limits.max_epsilon && system.gradient[index] < 0);

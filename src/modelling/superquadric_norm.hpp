@@ -1,6 +1,8 @@
 #pragma once
 
-#include <cmath>
+#include <algorithm>
+
+#include "gfp/core/elementary.hpp"
 
 namespace gfp {
 
@@ -11,22 +13,21 @@ struct PNorm {
   double by_p = 0;            ///< Derivative by the exponent.
 };
 
-/// Everything comes from the ratio r = min/max <= 1: r^p underflows to 0 harmlessly, and log1p keeps what is small beside 1.
+/// Everything comes from the ratio r = min/max <= 1: r^p underflows harmlessly. Branch-free, so that loops over it vectorise; at the
+/// origin, where the norm has no derivative, that of a point on the first axis stands in.
 inline PNorm p_norm(double a, double b, double p) {
-  const bool swapped = b > a;
-  const double larger = swapped ? b : a, smaller = swapped ? a : b;
-  if (!(larger > 0)) return {};
-  const double ratio = smaller / larger;
-  const double log_ratio = ratio > 0 ? std::log(ratio) : 0;
-  const double power = ratio > 0 ? std::exp(p * log_ratio) : 0;
-  const double log_sum = std::log1p(power);
-  const double growth = std::exp(log_sum / p);  // value / larger
+  constexpr double kTiny = 1e-290;
+  const double larger = std::max(a, b), smaller = std::min(a, b);
+  const double ratio = std::max(smaller / std::max(larger, kTiny), kTiny);
+  const double log_ratio = fast_log(ratio);
+  const double power = fast_exp(p * log_ratio);
+  const double log_sum = fast_log(1 + power);
+  const double growth = fast_exp(log_sum / p);  // value / larger
+  const double by_larger = growth / (1 + power), by_smaller = std::min(1.0, by_larger * power / ratio);
   PNorm norm;
   norm.value = larger * growth;
-  const double by_larger = growth / (1 + power);
-  const double by_smaller = ratio > 0 ? by_larger * power / ratio : (p > 1 ? 0 : 1);
-  norm.by_a = swapped ? by_smaller : by_larger;
-  norm.by_b = swapped ? by_larger : by_smaller;
+  norm.by_a = b > a ? by_smaller : by_larger;
+  norm.by_b = b > a ? by_larger : by_smaller;
   norm.by_p = norm.value / p * (power * log_ratio / (1 + power) - log_sum / p);
   return norm;
 }

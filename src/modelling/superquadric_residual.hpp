@@ -1,6 +1,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <span>
+#include <vector>
 
 #include "gfp/modelling/superquadric.hpp"
 
@@ -31,10 +33,7 @@ struct LinearisedGauge {
   double value = 0, slope = 0;
   SuperquadricStep derivative = SuperquadricStep::Zero();
 };
-LinearisedGauge linearised_gauge(const Superquadric& superquadric, const Eigen::Vector3d& point);
-
-/// surface_distance(); its normalisation by the gauge's slope is held fixed in the derivative (Gauss-Newton).
-LinearisedLength linearised_distance(const Superquadric& superquadric, const Eigen::Vector3d& point);
+std::vector<LinearisedGauge> linearised_gauges(const Superquadric& superquadric, std::span<const Eigen::Vector3d> points);
 
 /// reach() in `direction` (unit).
 LinearisedLength linearised_reach(const Superquadric& superquadric, const Eigen::Vector3d& direction);
@@ -44,7 +43,7 @@ struct Ray {
   Eigen::Vector3d origin, direction;
 };
 
-/// The point of the line with the smallest gauge: where it touches the surface or is deepest inside.
-Eigen::Vector3d deepest_point(const Superquadric& superquadric, const Ray& ray);
+/// Of each line the point with the smallest gauge: where it touches the surface or is deepest inside.
+std::vector<Eigen::Vector3d> deepest_points(const Superquadric& superquadric, std::span<const Ray> rays);
 
 }  // namespace gfp

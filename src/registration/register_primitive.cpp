@@ -213,7 +213,7 @@ class Race {
     std::vector<Contender> different;
     for (Contender& contender : contenders_) {
       coarse_[contender.hypothesis].pose(contender.scored.state);
-      const Bounds box = bounds(coarse_[contender.hypothesis].vertices_support());
+      const Bounds box = coarse_[contender.hypothesis].bounds_support();
       bool twin = false;
       for (std::size_t k = 0; k < different.size(); ++k)
         twin = twin || (different[k].hypothesis == contender.hypothesis && std::max((filled[k].low - box.low).norm(), (filled[k].high - box.high).norm()) < kTwinM);

@@ -18,14 +18,17 @@ double geman_mcclure(double residual, double scale) {
   return 1.0 / (denominator * denominator);
 }
 
-/// matrix += weight row row^T (lower triangle, rows of `size`), gradient += scaled_residual row.
-__attribute__((target_clones("arch=x86-64-v3", "default"))) void add_outer_product(const double* row, int size, double weight, double scaled_residual,
-                                                                                   double* matrix, double* gradient) {
-  for (int i = 0; i < size; ++i) {
-    const double scaled = weight * row[i];
-    double* target = matrix + i * size;
-    for (int j = 0; j <= i; ++j) target[j] += scaled * row[j];
-    gradient[i] += scaled_residual * row[i];
+/// target += factor * values, over all coordinates of all points.
+__attribute__((target_clones("arch=x86-64-v3", "default"))) void add_scaled(const double* __restrict values, double factor, std::size_t count, double* __restrict target) {
+  for (std::size_t k = 0; k < count; ++k) target[k] += factor * values[k];
+}
+
+/// linear (3 x 3, column by column) * point + offset, for all points.
+__attribute__((target_clones("arch=x86-64-v3", "default"))) void transform_points(const double* __restrict points, std::size_t count, const double* linear, const double* offset,
+                                                                                  double* __restrict out) {
+  for (std::size_t k = 0; k < count; ++k) {
+    const double x = points[3 * k], y = points[3 * k + 1], z = points[3 * k + 2];
+    for (std::size_t r = 0; r < 3; ++r) out[3 * k + r] = linear[r] * x + linear[3 + r] * y + linear[6 + r] * z + offset[r];
   }
 }
 
@@ -93,28 +96,23 @@ void VisibleFit::pose(const PoseState& state) {
   size_ = state.log_size.array().exp().matrix();
   const std::size_t count = primitive_.size();
   canonical_ = primitive_.mean;
-  for (Eigen::Index k = 0; k < state.modes.size(); ++k) {
-    const double coefficient = state.modes[k];
-    if (coefficient == 0) continue;
-    const auto& mode = primitive_.modes[static_cast<std::size_t>(k)];
-    for (std::size_t i = 0; i < count; ++i) canonical_[i] += coefficient * mode[i];
-  }
-  support_.resize(count);
+  for (Eigen::Index k = 0; k < state.modes.size(); ++k)
+    if (state.modes[k] != 0) add_scaled(primitive_.modes[at(static_cast<int>(k))].front().data(), state.modes[k], 3 * count, canonical_.front().data());
   camera_.resize(count);
-  const Eigen::Matrix3d linear = state.T_support_object.linear() * size_.asDiagonal();
-  const Vector3d offset = state.T_support_object.translation();
-  for (std::size_t i = 0; i < count; ++i) {
-    support_[i] = linear * canonical_[i] + offset;
-    camera_[i] = tile_.T_camera_support * support_[i];
-  }
+  support_linear_ = state.T_support_object.linear() * size_.asDiagonal();
+  const Eigen::Matrix3d linear = tile_.T_camera_support.linear() * support_linear_;
+  const Vector3d offset = tile_.T_camera_support * state.T_support_object.translation();
+  transform_points(canonical_.front().data(), count, linear.data(), offset.data(), camera_.front().data());
   rendered_.reset(tile_.rect, tile_.step);
   rasterise(camera_, primitive_.topology->triangles, tile_.camera, rendered_, {.cull_back = true});
 }
 
-double VisibleFit::lowest_z() const {
-  double lowest = 1e300;
-  for (const auto& p : support_) lowest = std::min(lowest, p.z());
-  return lowest;
+Vector3d VisibleFit::support_point(std::size_t vertex) const { return support_linear_ * canonical_[vertex] + state_.T_support_object.translation(); }
+
+Bounds VisibleFit::bounds_support() const {
+  Bounds box;
+  for (std::size_t i = 0; i < canonical_.size(); ++i) box.include(support_point(i));
+  return box;
 }
 
 Vector3d VisibleFit::visible_centroid_shift() const {
@@ -145,31 +143,34 @@ VisibleFit::SurfacePoint VisibleFit::surface_point(int cell) const {
   const Triangle& t = primitive_.topology->triangles[at(rendered_.triangle[at(cell)])];
   SurfacePoint result{};
   for (std::size_t k = 0; k < 3; ++k) result.vertices[k] = t[k];
-  result.weights = barycentric_on_ray(support_[at(t[0])] - camera_support_, support_[at(t[1])] - camera_support_, support_[at(t[2])] - camera_support_, tile_.rays[at(cell)]);
-  for (int k = 0; k < 3; ++k) {
-    result.point += result.weights[k] * support_[at(result.vertices[k])];
-    result.canonical += result.weights[k] * canonical_[at(result.vertices[k])];
-  }
+  const Vector3d ray = tile_.camera.ray(tile_.rect.u0 + cell % tile_.width * tile_.step, tile_.rect.v0 + cell / tile_.width * tile_.step);
+  result.weights = barycentric_on_ray(camera_[at(t[0])], camera_[at(t[1])], camera_[at(t[2])], ray);
+  result.point = camera_support_ + tile_.rays[at(cell)] * static_cast<double>(rendered_.depth[at(cell)]);
+  for (int k = 0; k < 3; ++k) result.canonical += result.weights[k] * canonical_[at(result.vertices[k])];
   return result;
 }
 
 VisibleFit::SurfacePoint VisibleFit::vertex_point(std::size_t vertex) const {
   const auto v = static_cast<std::int32_t>(vertex);
-  return {support_[vertex], {v, v, v}, {1, 0, 0}, canonical_[vertex]};
+  return {support_point(vertex), {v, v, v}, {1, 0, 0}, canonical_[vertex]};
 }
 
 void VisibleFit::add(const SurfacePoint& p, const Vector3d& direction, double residual, double weight) {
-  const Vector3d arm = p.point - state_.T_support_object.translation();
-  const Vector3d scaled_direction = size_.cwiseProduct(state_.T_support_object.linear().transpose() * direction);
-  row_.segment<3>(0) = direction;
-  row_.segment<3>(3) = arm.cross(direction);
-  row_.segment<3>(PoseState::kPose) = scaled_direction.cwiseProduct(p.canonical);
-  for (Eigen::Index k = 0; k < state_.modes.size(); ++k) {
-    const auto& mode = primitive_.modes[static_cast<std::size_t>(k)];
-    row_[PoseState::kShape + k] = scaled_direction.dot(p.weights[0] * mode[at(p.vertices[0])] + p.weights[1] * mode[at(p.vertices[1])] +
-                                                       p.weights[2] * mode[at(p.vertices[2])]);
+  const std::span<double> row = rows_.add(residual);
+  weights_.push_back(weight);
+  const Vector3d turned = (p.point - state_.T_support_object.translation()).cross(direction);
+  const Vector3d scaled_direction = support_linear_.transpose() * direction;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const auto axis = static_cast<Eigen::Index>(k);
+    row[k] = direction[axis];
+    row[3 + k] = turned[axis];
+    row[PoseState::kPose + k] = scaled_direction[axis] * p.canonical[axis];
   }
-  add_outer_product(row_.data(), static_cast<int>(row_.size()), weight, weight * residual, normal_matrix_.data(), gradient_.data());
+  for (std::size_t k = 0; k < at(static_cast<int>(state_.modes.size())); ++k) {
+    const auto& mode = primitive_.modes[k];
+    row[PoseState::kShape + k] = scaled_direction.dot(p.weights[0] * mode[at(p.vertices[0])] + p.weights[1] * mode[at(p.vertices[1])] +
+                                                      p.weights[2] * mode[at(p.vertices[2])]);
+  }
 }
 
 void VisibleFit::add_surface_residuals(const FitScale& scale) {
@@ -218,14 +219,14 @@ void VisibleFit::add_silhouette_residuals(const FitScale& scale) {
 
 void VisibleFit::add_contact_and_priors(const FitScale& scale) {
   if (has_support_) {
+    const Vector3d upwards = support_linear_.row(2).transpose();
     std::size_t lowest = 0;
-    for (std::size_t i = 1; i < support_.size(); ++i)
-      if (support_[i].z() < support_[lowest].z()) lowest = i;
-    add(vertex_point(lowest), Vector3d::UnitZ(), support_[lowest].z(), 1.0 / (scale.contact_sigma_m * scale.contact_sigma_m));
+    for (std::size_t i = 1; i < canonical_.size(); ++i)
+      if (upwards.dot(canonical_[i]) < upwards.dot(canonical_[lowest])) lowest = i;
+    const SurfacePoint foot = vertex_point(lowest);
+    add(foot, Vector3d::UnitZ(), foot.point.z(), 1.0 / (scale.contact_sigma_m * scale.contact_sigma_m));
   }
-  using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-  const int unknowns = state_.unknowns();
-  information_ = Eigen::Map<const RowMajor>(normal_matrix_.data(), unknowns, unknowns).selfadjointView<Eigen::Lower>();
+  rows_.normal_equations(weights_, information_, gradient_);
   const double tilt = has_support_ ? scale.tilt_sigma_rad : 0.35;
   information_(3, 3) += 1.0 / (tilt * tilt);
   information_(4, 4) += 1.0 / (tilt * tilt);
@@ -238,10 +239,8 @@ void VisibleFit::add_contact_and_priors(const FitScale& scale) {
 }
 
 Eigen::VectorXd VisibleFit::step(const FitScale& scale, double damping) {
-  const int unknowns = state_.unknowns();
-  normal_matrix_.assign(static_cast<std::size_t>(unknowns * unknowns), 0.0);
-  gradient_.setZero(unknowns);
-  row_.setZero(unknowns);
+  rows_.reset(state_.unknowns());
+  weights_.clear();
   add_surface_residuals(scale);
   add_silhouette_residuals(scale);
   add_contact_and_priors(scale);

@@ -3,7 +3,9 @@
 #include <Eigen/Dense>
 #include <vector>
 
+#include "gfp/core/mesh.hpp"
 #include "gfp/core/raster.hpp"
+#include "gfp/core/residual_rows.hpp"
 #include "gfp/memory/image_score.hpp"
 #include "gfp/primitive/primitive.hpp"
 
@@ -61,14 +63,13 @@ class VisibleFit {
   Eigen::Vector3d overlap_shift() const;
 
   const PoseState& state() const { return state_; }
-  double lowest_z() const;
-  const DepthTile& rendered() const { return rendered_; }
-  const std::vector<Eigen::Vector3d>& vertices_support() const { return support_; }
+  Bounds bounds_support() const;
 
  private:
   struct SurfacePoint;
   SurfacePoint surface_point(int cell) const;
   SurfacePoint vertex_point(std::size_t vertex) const;
+  Eigen::Vector3d support_point(std::size_t vertex) const;
   void add(const SurfacePoint& point, const Eigen::Vector3d& direction, double residual, double weight);
   void add_surface_residuals(const FitScale& scale);
   void add_silhouette_residuals(const FitScale& scale);
@@ -82,11 +83,13 @@ class VisibleFit {
 
   PoseState state_;
   Eigen::Vector3d size_ = Eigen::Vector3d::Ones();
-  std::vector<Eigen::Vector3d> canonical_, support_, camera_;
+  Eigen::Matrix3d support_linear_ = Eigen::Matrix3d::Identity();  ///< Rotation * size: canonical to support frame, but for the offset.
+  std::vector<Eigen::Vector3d> canonical_, camera_;
   DepthTile rendered_;
-  std::vector<double> normal_matrix_;            ///< Lower triangle, row by row.
+  ResidualRows rows_;
+  std::vector<double> weights_;                  ///< Of the rows.
   Eigen::MatrixXd information_;
-  Eigen::VectorXd gradient_, row_;
+  Eigen::VectorXd gradient_;
 };
 
 }  // namespace gfp

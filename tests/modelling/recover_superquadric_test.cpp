@@ -63,7 +63,7 @@ TEST(SuperquadricResidual, DerivativesAgreeWithDifferences) {
     const Superquadric s = household_superquadric(random);
     const Vector3d point = s.pose * Vector3d(s.half_axes_m.cwiseProduct(Vector3d(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1))) * 1.4);
     const Vector3d direction = Vector3d(random.normal(), random.normal(), random.normal()).normalized();
-    const auto at = linearised_gauge(s, point);
+    const auto at = linearised_gauges(s, {&point, 1}).front();
     const auto reaching = linearised_reach(s, direction);
     for (int k = 0; k < kSuperquadricParameters; ++k) {
       const double h = 1e-7;
@@ -84,7 +84,7 @@ TEST(SuperquadricResidual, DeepestPointHasTheSmallestGaugeOfItsLine) {
     const Ray ray{Vector3d::Zero(), target.normalized()};
     double least = std::numeric_limits<double>::infinity();
     for (double t = 0.2; t < 2; t += 1e-4) least = std::min(least, gauge(s, t * ray.direction));
-    EXPECT_LE(gauge(s, deepest_point(s, ray)), least * (1 + 2e-3)) << trial;
+    EXPECT_LE(gauge(s, deepest_points(s, {&ray, 1}).front()), least * (1 + 2e-3)) << trial;
   }
 }
 
