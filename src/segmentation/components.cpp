@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 #include "gfp/core/union_find.hpp"
 
@@ -14,10 +15,10 @@ struct Run {
 
 class Joiner {
  public:
-  Joiner(const OrganizedCloud& cloud, const std::vector<std::uint8_t>& classes, const std::vector<std::uint8_t>& valid, const ComponentOptions& options)
-      : z_(cloud.z.data()), classes_(classes.data()), valid_(valid.data()), width_(cloud.width), height_(cloud.height),
-        tolerance_(static_cast<float>(options.tolerance_m)), gap_(static_cast<float>(options.bridged_gap_m * std::max(cloud.camera.fx, cloud.camera.fy))),
-        run_of_(cloud.size(), -1) {}
+  Joiner(const DepthGrid& depth, const std::vector<std::uint8_t>& classes, const std::vector<std::uint8_t>& valid, const ComponentOptions& options)
+      : z_(depth.z), classes_(classes.data()), valid_(valid.data()), width_(depth.width), height_(depth.height),
+        tolerance_(static_cast<float>(options.tolerance_m)), gap_(static_cast<float>(options.bridged_gap_m * depth.focal_px)),
+        run_of_(classes.size(), -1) {}
 
   std::vector<PixelList> run(int min_pixels) {
     find_runs();
@@ -35,11 +36,24 @@ class Joiner {
   }
   std::int32_t gap_px(std::int32_t a) const { return static_cast<std::int32_t>(std::min(gap_ / z_[a], 64.0F)); }
 
+  /// The first pixel of [i, end) that has a class, or `end`: eight at a time over the usual emptiness.
+  std::int32_t next_in_class(std::int32_t i, std::int32_t end) const {
+    for (std::uint64_t eight = 0; i + 8 <= end; i += 8) {
+      std::memcpy(&eight, classes_ + i, sizeof eight);
+      if (eight != 0) break;
+    }
+    while (i < end && classes_[i] == 0) ++i;
+    return i;
+  }
+
   void find_runs() {
     for (std::int32_t v = 0; v < height_; ++v) {
       const std::int32_t row = v * width_, row_end = row + width_;
       for (std::int32_t i = row; i < row_end;) {
-        if (classes_[i] == 0) { ++i; continue; }
+        if (classes_[i] == 0) {
+          i = next_in_class(i + 1, row_end);
+          continue;
+        }
         const std::int32_t begin = i;
         const std::int32_t id = sets_.add();
         do { run_of_[static_cast<std::size_t>(i)] = id; ++i; } while (i < row_end && classes_[i] != 0 && joined(i - 1, i));
@@ -104,9 +118,20 @@ class Joiner {
 
 }  // namespace
 
-std::vector<PixelList> connected_components(const OrganizedCloud& cloud, const std::vector<std::uint8_t>& classes,
+PixelRect bounding_box(const PixelList& pixels, int width) {
+  PixelRect box{width, pixels.front() / width, 0, pixels.back() / width + 1};
+  std::int32_t row = box.v0 * width;  // walked along, for divisions are dear
+  for (const std::int32_t i : pixels) {
+    while (i >= row + width) row += width;
+    box.u0 = std::min(box.u0, i - row);
+    box.u1 = std::max(box.u1, i - row + 1);
+  }
+  return box;
+}
+
+std::vector<PixelList> connected_components(const DepthGrid& depth, const std::vector<std::uint8_t>& classes,
                                             const std::vector<std::uint8_t>& valid, const ComponentOptions& options, int min_pixels) {
-  return Joiner(cloud, classes, valid, options).run(min_pixels);
+  return Joiner(depth, classes, valid, options).run(min_pixels);
 }
 
 }  // namespace gfp

@@ -15,16 +15,11 @@ struct Box {
 };
 
 Box open_pixels(const OrganizedCloud& cloud, const std::vector<std::uint8_t>& classes, const PixelList& pixels) {
-  int u0 = cloud.width, u1 = 0;
-  for (const auto i : pixels) {
-    u0 = std::min(u0, i % cloud.width);
-    u1 = std::max(u1, i % cloud.width + 1);
-  }
-  const int v0 = pixels.front() / cloud.width, v1 = pixels.back() / cloud.width + 1;
-  Box box{u0, v0, u1 - u0, v1 - v0, {}};
+  const PixelRect rect = bounding_box(pixels, cloud.width);
+  Box box{rect.u0, rect.v0, rect.width(), rect.height(), {}};
   box.open.reserve(static_cast<std::size_t>(box.width) * static_cast<std::size_t>(box.height));
-  for (int v = v0; v < v1; ++v)
-    for (int u = u0; u < u1; ++u) {
+  for (int v = rect.v0; v < rect.v1; ++v)
+    for (int u = rect.u0; u < rect.u1; ++u) {
       const auto c = classes[static_cast<std::size_t>(v) * static_cast<std::size_t>(cloud.width) + static_cast<std::size_t>(u)];
       box.open.push_back(c >= kOnSupport && c < kAbove);
     }

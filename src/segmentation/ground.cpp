@@ -80,7 +80,7 @@ void Ground::interpolate_row(int v, int width, float* row) const {
   for (int c = 0; c + 1 < columns; ++c) {
     const float right = at(c + 1), slope = (right - left) / static_cast<float>(cell_px);
     const int end = std::min(width, u + cell_px);
-    for (float k = 0.5F; u < end; ++u, k += 1.0F) row[u] = left + k * slope;
+    for (const int begin = u; u < end; ++u) row[u] = left + (static_cast<float>(u - begin) + 0.5F) * slope;
     left = right;
   }
   for (; u < width; ++u) row[u] = left;

@@ -3,20 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "segmentation/components.hpp"
+
 namespace gfp {
 namespace {
 
 constexpr int kSearchPx = 24;       // an occluder's shadow without readings is this wide at most
 constexpr float kNearer = 0.015F;   // share of the depth by which an occluder is nearer
-
-PixelRect bounding_box(const std::vector<std::int32_t>& pixels, int width) {
-  PixelRect box{width, pixels.front() / width, 0, pixels.back() / width + 1};
-  for (const auto i : pixels) {
-    box.u0 = std::min(box.u0, i % width);
-    box.u1 = std::max(box.u1, i % width + 1);
-  }
-  return box;
-}
 
 // Whether, from an outline pixel, the first reading in this direction is another segment that is nearer.
 bool nearer_segment(const OrganizedCloud& cloud, const Image<std::int32_t>& labels, std::int32_t own, int u, int v, int du, int dv) {
@@ -67,14 +60,17 @@ void describe_outline(const OrganizedCloud& cloud, const Image<std::int32_t>& la
   segment.height_m = support != nullptr ? top : top - bottom;
 
   int cut = 0, top_pixels = 0, top_cut = 0, hidden = 0;
+  int v = segment.bbox.v0;
   for (const auto i : segment.pixels) {
-    const int u = i % width, v = i / width;
+    while (i >= (v + 1) * width) ++v;
+    const int u = i - v * width;
     const bool border = at_border(readings, u, v);
+    const std::int32_t* label = &labels.pixels[static_cast<std::size_t>(i)];
+    if (!border && label[1] == own && label[-1] == own && label[width] == own && label[-width] == own) continue;
     bool is_hidden = false, on_outline = false;
     constexpr int kSteps[4][2] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}};
     for (const auto& step : kSteps) {
-      const int nu = u + step[0], nv = v + step[1];
-      if (!labels.contains(nu, nv) || labels.at(nu, nv) == own) continue;
+      if (!labels.contains(u + step[0], v + step[1]) || labels.pixels[static_cast<std::size_t>(i + step[1] * width + step[0])] == own) continue;
       on_outline = true;
       is_hidden = is_hidden || nearer_segment(cloud, labels, own, u, v, step[0], step[1]);
     }

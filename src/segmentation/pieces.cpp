@@ -1,9 +1,12 @@
 #include "segmentation/pieces.hpp"
 
+#include <oneapi/tbb/parallel_for.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "gfp/core/box_normals.hpp"
 
@@ -16,119 +19,108 @@ constexpr float kCreaseCos = 0.88F;       // 28 deg
 constexpr float kStepShare = 0.5F;        // of the cluster tolerance: a step of depth that ends a surface
 constexpr int kMinPiece = 40;             // pixels; less is noise at a cut
 
-struct Offset {
-  int du, dv;
+constexpr int kMargin = kSpan;            // pixels of the grid around a cluster's box: nothing looks farther
+
+/// A piece before all clusters are cut.
+struct Cut {
+  PixelList pixels;
+  bool left_over = false;  // connected only by steps that end a surface
 };
 
-/// An index with its column and row: divisions are the dear part of walking over neighbours.
-struct Pixel {
-  std::int32_t i;
-  int u, v;
-};
-
-PixelRect bounds_of(const PixelList& pixels, int width) {
-  PixelRect box{width, pixels.front() / width, 0, pixels.back() / width + 1};
-  for (const auto i : pixels) {
-    box.u0 = std::min(box.u0, i % width);
-    box.u1 = std::max(box.u1, i % width + 1);
-  }
-  return box;
-}
-
+/// Cuts one cluster, on a grid of its own with a margin all around: no neighbour is ever outside, and all of it stays in the cache.
 class Cutter {
  public:
-  Cutter(const OrganizedCloud& cloud, const std::vector<PixelList>& clusters, double tolerance_m, PieceMap& map)
-      : cloud_(cloud), clusters_(clusters), tolerance_(static_cast<float>(tolerance_m)), map_(map), cluster_of_(cloud.size(), -1), open_(cloud.size(), 0), crease_(cloud.size(), 0) {}
+  Cutter(const OrganizedCloud& cloud, const PixelList& cluster, const PixelRect& box, double tolerance_m, const PieceMap& normals)
+      : cloud_(cloud), map_(normals), tolerance_(static_cast<float>(tolerance_m)), stride_(box.width() + 2 * kMargin), height_(box.height() + 2 * kMargin) {
+    const auto cells = static_cast<std::size_t>(stride_) * static_cast<std::size_t>(height_);
+    inside_.assign(cells, 0);
+    z_.assign(cells, 0);
+    cells_.reserve(cluster.size());
+    int v = box.v0, row = box.v0 * cloud.width;
+    for (const std::int32_t i : cluster) {
+      for (; i >= row + cloud.width; row += cloud.width) ++v;
+      const std::int32_t c = (v - box.v0 + kMargin) * stride_ + (i - row) - box.u0 + kMargin;
+      cells_.push_back({c, i, ((i - row) & 1) != 0, (v & 1) != 0});
+      inside_[index(c)] = 1;
+      z_[index(c)] = cloud.z[index(i)];
+    }
+  }
 
-  void run() {
-    for (std::size_t c = 0; c < clusters_.size(); ++c)
-      for (const auto i : clusters_[c]) cluster_of_[static_cast<std::size_t>(i)] = static_cast<std::int32_t>(c);
-    estimate_normals();
-    for (const PixelList& cluster : clusters_)
-      for (const auto i : cluster) open_[static_cast<std::size_t>(i)] = !is_step(pixel(i)) && !near_crease(pixel(i));
-    const auto kept = connected_components(cloud_, open_, open_, {kStepShare * tolerance_, 0.0}, kMinPiece);
-    for (const PixelList& pixels : kept) add(pixels);
+  std::vector<Cut> run() {
+    std::vector<std::uint8_t> open(inside_.size(), 0);
+    crease_.assign(inside_.size(), 0);
+    for (const Cell& cell : cells_) open[index(cell.c)] = !is_step(cell.c) && !near_crease(cell);
+    piece_.assign(inside_.size(), -1);
+    const DepthGrid depth{z_.data(), stride_, height_, 0};
+    for (const PixelList& component : connected_components(depth, open, open, {kStepShare * tolerance_, 0.0}, kMinPiece)) add(component, false);
     grow_back();
-    add_what_is_left();
-    collect();
+    for (const Cell& cell : cells_) open[index(cell.c)] = piece_[index(cell.c)] < 0;
+    for (const PixelList& component : connected_components(depth, open, open, {2.0 * static_cast<double>(tolerance_), 0.0}, 1)) add(component, true);
+    for (const Cell& cell : cells_) cuts_[index(piece_[index(cell.c)])].pixels.push_back(cell.i);
+    return std::move(cuts_);
   }
 
  private:
-  Pixel pixel(std::int32_t i) const { return {i, i % cloud_.width, i / cloud_.width}; }
-  float z(std::int32_t i) const { return cloud_.z[static_cast<std::size_t>(i)]; }
-  float step_limit(std::int32_t i) const { return kStepShare * tolerance_ * std::max(1.0F, z(i) * z(i)); }
-
-  void estimate_normals() {
-    const DepthPlanes depth{cloud_.width, cloud_.height, cloud_.x.data(), cloud_.y.data(), cloud_.z.data(),
-                            cloud_.camera.fx, cloud_.camera.fy, cloud_.camera.distortion == DistortionModel::kNone};
-    for (auto* plane : {&map_.nx, &map_.ny, &map_.nz}) plane->assign(cloud_.size(), std::numeric_limits<float>::quiet_NaN());
-    for (const PixelList& cluster : clusters_)
-      box_normals(depth, {kNormalRadius, 0.02F, true}, bounds_of(cluster, cloud_.width), map_.nx.data(), map_.ny.data(), map_.nz.data());
-  }
-
-  // The pixel `offset` away where it is in the image and in the same cluster, else -1.
-  std::int32_t same_cluster(const Pixel& p, Offset offset) const {
-    const int u = p.u + offset.du, v = p.v + offset.dv;
-    if (u < 0 || v < 0 || u >= cloud_.width || v >= cloud_.height) return -1;
-    const std::int32_t there = p.i + offset.dv * cloud_.width + offset.du;
-    return cluster_of_[static_cast<std::size_t>(there)] == cluster_of_[static_cast<std::size_t>(p.i)] ? there : -1;
-  }
+  struct Cell {
+    std::int32_t c, i;  // in the grid, in the image
+    bool odd_column, odd_row;
+  };
+  static std::size_t index(std::int32_t k) { return static_cast<std::size_t>(k); }
+  bool inside(std::int32_t c) const { return inside_[index(c)] != 0; }
+  float z(std::int32_t c) const { return z_[index(c)]; }
+  float step_limit(std::int32_t c) const { return kStepShare * tolerance_ * std::max(1.0F, z(c) * z(c)); }
 
   // A step is more than the surface's own slope explains: the depth's second difference across the pixel.
-  bool is_step(const Pixel& p) const {
-    const std::int32_t i = p.i;
-    for (const Offset d : {Offset{1, 0}, Offset{0, 1}}) {
-      const std::int32_t ahead = same_cluster(p, d), behind = same_cluster(p, {-d.du, -d.dv});
-      if (ahead < 0 || std::abs(z(ahead) - z(i)) <= step_limit(i)) continue;
-      if (behind < 0 || std::abs((z(ahead) - z(i)) - (z(i) - z(behind))) > step_limit(i)) return true;
+  bool is_step(std::int32_t c) const {
+    const float limit = step_limit(c);
+    for (const std::int32_t d : {1, stride_}) {
+      const float rise = z(c + d) - z(c);
+      if (!inside(c + d) || std::abs(rise) <= limit) continue;
+      if (!inside(c - d) || std::abs(rise - (z(c) - z(c - d))) > limit) return true;
     }
     return false;
   }
 
   // Creases are bands as wide as the span: every second pixel of every second row tells for its neighbours (which come later).
-  bool near_crease(const Pixel& p) {
-    const std::int32_t anchor = same_cluster(p, {-(p.u & 1), -(p.v & 1)});
-    if (anchor >= 0 && anchor != p.i) return crease_[static_cast<std::size_t>(anchor)] != 0;
-    const bool crease = is_crease(p);
-    crease_[static_cast<std::size_t>(p.i)] = crease;
+  bool near_crease(const Cell& cell) {
+    const std::int32_t anchor = cell.c - (cell.odd_column ? 1 : 0) - (cell.odd_row ? stride_ : 0);
+    if (anchor != cell.c && inside(anchor)) return crease_[index(anchor)] != 0;
+    const bool crease = is_crease(cell);
+    crease_[index(cell.c)] = crease;
     return crease;
   }
 
-  bool is_crease(const Pixel& p) const {
-    constexpr std::array<Offset, 4> kDirections = {{{kSpan, 0}, {0, kSpan}, {kSpan - 1, kSpan - 1}, {kSpan - 1, 1 - kSpan}}};
-    for (const Offset d : kDirections) {
-      const std::int32_t a = same_cluster(p, d), b = same_cluster(p, {-d.du, -d.dv});
-      if (a < 0 || b < 0 || std::abs(z(a) - z(b)) > 4.0F * step_limit(p.i)) continue;
-      const Eigen::Vector3f na = map_.normal(a), nb = map_.normal(b);
+  bool is_crease(const Cell& cell) const {
+    constexpr std::array<std::array<int, 2>, 4> kDirections = {{{kSpan, 0}, {0, kSpan}, {kSpan - 1, kSpan - 1}, {kSpan - 1, 1 - kSpan}}};
+    const float limit = 4.0F * step_limit(cell.c);
+    for (const auto& [du, dv] : kDirections) {
+      const std::int32_t here = dv * stride_ + du, there = dv * cloud_.width + du;
+      if (!inside(cell.c + here) || !inside(cell.c - here) || std::abs(z(cell.c + here) - z(cell.c - here)) > limit) continue;
+      const Eigen::Vector3f na = map_.normal(cell.i + there), nb = map_.normal(cell.i - there);
       if (!(na.dot(nb) < kCreaseCos)) continue;
-      const Eigen::Vector3f between = cloud_.point(static_cast<std::size_t>(a)) - cloud_.point(static_cast<std::size_t>(b));
+      const Eigen::Vector3f between = cloud_.point(index(cell.i + there)) - cloud_.point(index(cell.i - there));
       if ((na - nb).dot(between) < 0.0F) return true;
     }
     return false;
   }
 
-  void add(const PixelList& pixels) {
-    const auto id = static_cast<std::int32_t>(map_.cluster.size());
-    if (map_.piece.empty()) map_.piece.assign(cloud_.size(), -1);
-    for (const auto i : pixels) map_.piece[static_cast<std::size_t>(i)] = id;
-    map_.cluster.push_back(cluster_of_[static_cast<std::size_t>(pixels.front())]);
+  void add(const PixelList& component, bool left_over) {
+    for (const std::int32_t c : component) piece_[index(c)] = static_cast<std::int32_t>(cuts_.size());
+    cuts_.push_back({{}, left_over});
   }
 
   // Breadth first from all pieces at once, so that a cut is shared out evenly; never across a step of depth.
   void grow_back() {
-    if (map_.piece.empty()) map_.piece.assign(cloud_.size(), -1);
     std::vector<std::int32_t> frontier, next;
-    for (const PixelList& cluster : clusters_)
-      for (const auto i : cluster)
-        if (map_.piece[static_cast<std::size_t>(i)] >= 0) frontier.push_back(i);
+    for (const Cell& cell : cells_)
+      if (piece_[index(cell.c)] >= 0) frontier.push_back(cell.c);
     while (!frontier.empty()) {
       next.clear();
-      for (const auto i : frontier) {
-        const Pixel p = pixel(i);
-        for (const Offset d : {Offset{1, 0}, Offset{-1, 0}, Offset{0, 1}, Offset{0, -1}}) {
-          const std::int32_t n = same_cluster(p, d);
-          if (n < 0 || map_.piece[static_cast<std::size_t>(n)] >= 0 || std::abs(z(n) - z(i)) > 2.0F * step_limit(i)) continue;
-          map_.piece[static_cast<std::size_t>(n)] = map_.piece[static_cast<std::size_t>(i)];
+      for (const std::int32_t c : frontier) {
+        const float limit = 2.0F * step_limit(c);
+        for (const std::int32_t n : {c + 1, c - 1, c + stride_, c - stride_}) {
+          if (!inside(n) || piece_[index(n)] >= 0 || std::abs(z(n) - z(c)) > limit) continue;
+          piece_[index(n)] = piece_[index(c)];
           next.push_back(n);
         }
       }
@@ -136,32 +128,45 @@ class Cutter {
     }
   }
 
-  void add_what_is_left() {
-    std::vector<std::uint8_t> left(cloud_.size(), 0);
-    for (const PixelList& cluster : clusters_)
-      for (const auto i : cluster) left[static_cast<std::size_t>(i)] = map_.piece[static_cast<std::size_t>(i)] < 0;
-    for (const PixelList& pixels : connected_components(cloud_, left, left, {2.0 * static_cast<double>(tolerance_), 0.0}, 1)) add(pixels);
-  }
-
-  void collect() {
-    map_.pixels.resize(map_.cluster.size());
-    for (std::int32_t i = 0; i < static_cast<std::int32_t>(map_.piece.size()); ++i)
-      if (const auto p = map_.piece[static_cast<std::size_t>(i)]; p >= 0) map_.pixels[static_cast<std::size_t>(p)].push_back(i);
-  }
-
   const OrganizedCloud& cloud_;
-  const std::vector<PixelList>& clusters_;
+  const PieceMap& map_;
   float tolerance_;
-  PieceMap& map_;
-  std::vector<std::int32_t> cluster_of_;
-  std::vector<std::uint8_t> open_, crease_;
+  std::int32_t stride_, height_;
+  std::vector<Cell> cells_;  // of the cluster, ascending
+  std::vector<std::uint8_t> inside_, crease_;
+  std::vector<float> z_;
+  std::vector<std::int32_t> piece_;
+  std::vector<Cut> cuts_;
 };
+
+void estimate_normals(const OrganizedCloud& cloud, const std::vector<PixelRect>& boxes, PieceMap& map) {
+  const DepthPlanes depth{cloud.width, cloud.height, cloud.x.data(), cloud.y.data(), cloud.z.data(),
+                          cloud.camera.fx, cloud.camera.fy, cloud.camera.distortion == DistortionModel::kNone};
+  for (auto* plane : {&map.nx, &map.ny, &map.nz}) plane->assign(cloud.size(), std::numeric_limits<float>::quiet_NaN());
+  for (const PixelRect& box : boxes) box_normals(depth, {kNormalRadius, 0.02F, true}, box, map.nx.data(), map.ny.data(), map.nz.data());
+}
 
 }  // namespace
 
 PieceMap cut_into_pieces(const OrganizedCloud& cloud, const std::vector<PixelList>& clusters, double tolerance_m) {
   PieceMap map;
-  Cutter(cloud, clusters, tolerance_m, map).run();
+  std::vector<PixelRect> boxes;
+  for (const PixelList& cluster : clusters) boxes.push_back(bounding_box(cluster, cloud.width));
+  estimate_normals(cloud, boxes, map);
+  std::vector<std::vector<Cut>> cuts(clusters.size());
+  oneapi::tbb::parallel_for(std::size_t{0}, clusters.size(), [&](std::size_t k) { cuts[k] = Cutter(cloud, clusters[k], boxes[k], tolerance_m, map).run(); });
+  std::vector<std::pair<Cut*, int>> all;
+  for (std::size_t k = 0; k < cuts.size(); ++k)
+    for (Cut& cut : cuts[k]) all.emplace_back(&cut, static_cast<int>(k));
+  std::sort(all.begin(), all.end(), [](const auto& a, const auto& b) {
+    return std::pair(a.first->left_over, a.first->pixels.front()) < std::pair(b.first->left_over, b.first->pixels.front());
+  });
+  map.piece.assign(cloud.size(), -1);
+  for (const auto& [cut, cluster] : all) {
+    for (const std::int32_t i : cut->pixels) map.piece[static_cast<std::size_t>(i)] = static_cast<std::int32_t>(map.pixels.size());
+    map.pixels.push_back(std::move(cut->pixels));
+    map.cluster.push_back(cluster);
+  }
   return map;
 }
 

@@ -1,5 +1,7 @@
 #include "segmentation/pixel_classes.hpp"
 
+#include <oneapi/tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -9,8 +11,9 @@ namespace {
 
 // A plane in floats for the loops below; the outline's edges as planes through which its prism is bounded.
 struct Kernel {
-  float up[3], camera_height, band, band_per_m2, max_height, margin;
+  float up[3], camera_height, band, band_per_m2, max_height;
   std::uint8_t on, above;  // the class to give; 0: none
+  std::vector<float> edges;  // x y z offset of each, the margin included
 };
 
 constexpr int kBlock = 32;
@@ -39,12 +42,16 @@ int near_plane(const float* x, const float* y, const float* z, const float* grou
   return any;
 }
 
+// Edges as four floats: direction and offset.
 __attribute__((target_clones("arch=x86-64-v3", "default")))
-void clear_outside(const float* x, const float* y, const float* z, int count, float ex, float ey, float ez, float offset, std::uint8_t* near) {
-  for (int i = 0; i < count; ++i) {
-    const std::int32_t inside = ex * x[i] + ey * y[i] + ez * z[i] + offset >= 0.0F;
-    near[i] = static_cast<std::uint8_t>(near[i] * inside);
+void clear_outside(const float* x, const float* y, const float* z, int count, const float* edges, std::size_t edge_count, std::uint8_t* near) {
+  float least[kBlock];
+  std::fill_n(least, kBlock, 0.0F);
+  for (const float* e = edges; e != edges + 4 * edge_count; e += 4) {
+    const float ex = e[0], ey = e[1], ez = e[2], offset = e[3];
+    for (int i = 0; i < count; ++i) least[i] = std::min(least[i], ex * x[i] + ey * y[i] + ez * z[i] + offset);
   }
+  for (int i = 0; i < count; ++i) near[i] = least[i] < 0.0F ? std::uint8_t{0} : near[i];
 }
 
 __attribute__((target_clones("arch=x86-64-v3", "default")))
@@ -80,37 +87,41 @@ std::vector<std::pair<int, int>> outline_spans(const OrganizedCloud& cloud, cons
   return spans;
 }
 
-void apply(const OrganizedCloud& cloud, const FlatSurface& surface, const Kernel& kernel, std::vector<std::uint8_t>& classes) {
+void apply_to_row(const OrganizedCloud& cloud, const FlatSurface& surface, const Kernel& kernel, int v, std::pair<int, int> inside, std::uint8_t* classes) {
   std::uint8_t near[kBlock];
   std::vector<float> ground(static_cast<std::size_t>(cloud.width));
-  const auto spans = outline_spans(cloud, surface);
-  for (int v = 0; v < cloud.height; ++v) {
-    const auto inside = spans[static_cast<std::size_t>(v)];
-    surface.ground.interpolate_row(v, cloud.width, ground.data());
-    for (int u = 0; u < cloud.width; u += kBlock) {
-      const int count = std::min(kBlock, cloud.width - u);
-      const auto i = static_cast<std::size_t>(v) * static_cast<std::size_t>(cloud.width) + static_cast<std::size_t>(u);
-      const float *x = &cloud.x[i], *y = &cloud.y[i], *z = &cloud.z[i];
-      const int found = near_plane(x, y, z, &ground[static_cast<std::size_t>(u)], &classes[i], count, kernel, near);
-      if (found == 0) continue;
-      if (found == kOnly && u >= inside.first && u + count <= inside.second) {  // plain surface, the usual case
-        assign(near, count, kernel.on, kernel.above, &classes[i]);
-        continue;
-      }
-      for (std::size_t e = 0; e < surface.edges.size(); ++e) {
-        const Eigen::Vector3f edge = surface.edges[e].cast<float>();
-        clear_outside(x, y, z, count, edge.x(), edge.y(), edge.z(), static_cast<float>(surface.edge_offsets_m[e]) + kernel.margin, near);
-      }
-      assign(near, count, kernel.on, kernel.above, &classes[i]);
-    }
+  surface.ground.interpolate_row(v, cloud.width, ground.data());
+  const auto row = static_cast<std::size_t>(v) * static_cast<std::size_t>(cloud.width);
+  for (int u = 0; u < cloud.width; u += kBlock) {
+    const int count = std::min(kBlock, cloud.width - u);
+    const auto i = row + static_cast<std::size_t>(u);
+    const float *x = &cloud.x[i], *y = &cloud.y[i], *z = &cloud.z[i];
+    const int found = near_plane(x, y, z, &ground[static_cast<std::size_t>(u)], classes + u, count, kernel, near);
+    if (found == 0) continue;
+    const bool plain = found == kOnly && u >= inside.first && u + count <= inside.second;  // the usual case
+    if (!plain) clear_outside(x, y, z, count, kernel.edges.data(), kernel.edges.size() / 4, near);
+    assign(near, count, kernel.on, kernel.above, classes + u);
   }
+}
+
+void apply(const OrganizedCloud& cloud, const FlatSurface& surface, const Kernel& kernel, std::vector<std::uint8_t>& classes) {
+  const auto spans = outline_spans(cloud, surface);
+  constexpr int kRows = 32;  // of one task
+  oneapi::tbb::parallel_for(0, cloud.height, kRows, [&](int begin) {
+    for (int v = begin; v < std::min(begin + kRows, cloud.height); ++v)
+      apply_to_row(cloud, surface, kernel, v, spans[static_cast<std::size_t>(v)], &classes[static_cast<std::size_t>(v) * static_cast<std::size_t>(cloud.width)]);
+  });
 }
 
 Kernel kernel_of(const FlatSurface& surface, double max_height_m, double margin_m, int on, int above) {
   const Eigen::Vector3f up = surface.up.cast<float>();
-  return {{up.x(), up.y(), up.z()}, static_cast<float>(surface.camera_height_m), static_cast<float>(surface.band_m),
-          static_cast<float>(surface.band_per_m2), static_cast<float>(max_height_m), static_cast<float>(margin_m),
-          static_cast<std::uint8_t>(on), static_cast<std::uint8_t>(above)};
+  Kernel kernel{{up.x(), up.y(), up.z()}, static_cast<float>(surface.camera_height_m), static_cast<float>(surface.band_m),
+                static_cast<float>(surface.band_per_m2), static_cast<float>(max_height_m), static_cast<std::uint8_t>(on), static_cast<std::uint8_t>(above), {}};
+  for (std::size_t e = 0; e < surface.edges.size(); ++e) {
+    for (const double value : surface.edges[e]) kernel.edges.push_back(static_cast<float>(value));
+    kernel.edges.push_back(static_cast<float>(surface.edge_offsets_m[e] + margin_m));
+  }
+  return kernel;
 }
 
 }  // namespace

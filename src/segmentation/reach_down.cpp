@@ -10,6 +10,16 @@ constexpr int kLeastReadings = 6;
 constexpr double kBandShare = 0.4;   ///< Of the surface's band, which is three sigmas of one reading: as many of the mean.
 constexpr int kReach = 40;           ///< Pixels: a foot is no wider, but a warped table might be.
 
+/// Which pixels of a row are above a support and have a neighbour on it: right, left, below or above.
+__attribute__((target_clones("arch=x86-64-v3", "default"))) void mark_feet(const std::uint8_t* row, const std::uint8_t* above, const std::uint8_t* below, int count,
+                                                                           std::uint8_t* __restrict feet) {
+  constexpr int kDrop = kAbove - kOnSupport;
+  for (int u = 1; u + 1 < count; ++u) {
+    const auto on = static_cast<std::uint8_t>(row[u] - kDrop);
+    feet[u] = static_cast<std::uint8_t>((row[u] >= kAbove) & ((row[u - 1] == on) | (row[u + 1] == on) | (above[u] == on) | (below[u] == on)));
+  }
+}
+
 class FootSearch {
  public:
   FootSearch(const OrganizedCloud& cloud, const Supports& supports, std::vector<std::uint8_t>& classes)
@@ -17,9 +27,13 @@ class FootSearch {
 
   void run() {
     std::vector<std::int32_t> ring;
-    for (int v = 0; v < cloud_.height; ++v)
+    std::vector<std::uint8_t> feet(static_cast<std::size_t>(cloud_.width), 1);  // at either end of a row it may as well be one
+    for (int v = 0; v < cloud_.height; ++v) {
+      const std::uint8_t* row = &at(v * cloud_.width);
+      mark_feet(row, v > 0 ? row - cloud_.width : row, v + 1 < cloud_.height ? row + cloud_.width : row, cloud_.width, feet.data());
       for (int u = 0; u < cloud_.width; ++u)
-        if (at(v * cloud_.width + u) >= kAbove) visit_neighbours(u, v, ring);
+        if (feet[static_cast<std::size_t>(u)] && row[u] >= kAbove) visit_neighbours(u, v, ring);
+    }
     for (int step = 0; step < kReach && !ring.empty(); ++step) {
       std::vector<std::int32_t> joined, next;
       for (const std::int32_t pixel : ring)

@@ -1,6 +1,9 @@
 #include "gfp/segmentation/segment_cloud.hpp"
 
+#include <oneapi/tbb/parallel_for.h>
+
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -52,7 +55,7 @@ std::string reject_reason(const OrganizedCloud& cloud, const Supports& supports,
 
   std::vector<float> heights;
   int outside = 0, far = 0;
-  for (std::size_t k = 0; k < candidate.pixels.size(); k += candidate.pixels.size() / 4000 + 1) {
+  for (std::size_t k = 0; k < candidate.pixels.size(); k += candidate.pixels.size() / 1000 + 1) {
     const std::int32_t i = candidate.pixels[k];
     heights.push_back(static_cast<float>(support->height(cloud, i)));
     far += static_cast<double>(cloud.z[static_cast<std::size_t>(i)]) > kWorkspaceDepth;
@@ -80,8 +83,10 @@ std::vector<int> support_order(const Supports& supports, const std::vector<Candi
 }
 
 void label_pixels(const std::vector<std::uint8_t>& classes, const std::vector<int>& rank, const std::vector<Candidate>& taken, Image<std::int32_t>& labels) {
-  for (std::size_t i = 0; i < classes.size(); ++i)
-    if (classes[i] >= kOnSupport && classes[i] < kAbove) labels.pixels[i] = Segments::kPlaneLabel - rank[static_cast<std::size_t>(classes[i] - kOnSupport)];
+  std::array<std::int32_t, 256> label_of;
+  label_of.fill(Segments::kUnassigned);
+  for (std::size_t k = 0; k < rank.size(); ++k) label_of[kOnSupport + k] = Segments::kPlaneLabel - rank[k];
+  std::transform(classes.begin(), classes.end(), labels.pixels.begin(), [&](std::uint8_t c) { return label_of[c]; });
   for (std::size_t k = 0; k < taken.size(); ++k)
     for (const auto i : taken[k].pixels) labels.pixels[static_cast<std::size_t>(i)] = static_cast<std::int32_t>(k);
 }
@@ -135,14 +140,16 @@ std::vector<Candidate> objects_of(const OrganizedCloud& cloud, const Segmentatio
   std::vector<Candidate> candidates(object.empty() ? 0 : static_cast<std::size_t>(*std::max_element(object.begin(), object.end())) + 1);
   for (std::size_t p = 0; p < object.size(); ++p) {
     PixelList& pixels = candidates[static_cast<std::size_t>(object[p])].pixels;
+    const auto middle = static_cast<std::ptrdiff_t>(pixels.size());
     pixels.insert(pixels.end(), map.pixels[p].begin(), map.pixels[p].end());
+    std::inplace_merge(pixels.begin(), pixels.begin() + middle, pixels.end());
   }
-  for (Candidate& candidate : candidates) {
-    std::sort(candidate.pixels.begin(), candidate.pixels.end());
+  oneapi::tbb::parallel_for(std::size_t{0}, candidates.size(), [&](std::size_t k) {
+    Candidate& candidate = candidates[k];
     candidate.support = support_of(cloud, supports, candidate.pixels);
     if (candidate.support >= 0 && static_cast<int>(candidate.pixels.size()) >= options.min_points)
       take_enclosed(cloud, valid, supports.surfaces[static_cast<std::size_t>(candidate.support)], candidate.pixels);
-  }
+  });
   std::sort(candidates.begin(), candidates.end(), [](const auto& a, const auto& b) { return a.pixels.front() < b.pixels.front(); });
   return candidates;
 }
@@ -151,9 +158,9 @@ std::vector<Candidate> clusters(const OrganizedCloud& cloud, const SegmentationO
                                 const Supports& supports) {
   const std::uint8_t lowest = supports.planes.empty() ? kElsewhere : kAbove, highest = supports.planes.empty() ? kElsewhere : 255;
   std::vector<std::uint8_t> free(classes.size());
-  for (std::size_t i = 0; i < classes.size(); ++i) free[i] = classes[i] >= lowest && classes[i] <= highest;
+  std::transform(classes.begin(), classes.end(), free.begin(), [&](std::uint8_t c) { return static_cast<std::uint8_t>((c >= lowest) & (c <= highest)); });
   return objects_of(cloud, options, classes, supports,
-                    connected_components(cloud, free, classes, {options.cluster_tolerance_m, options.cluster_tolerance_m}, kWorthNaming));
+                    connected_components(depth_grid(cloud), free, classes, {options.cluster_tolerance_m, options.cluster_tolerance_m}, kWorthNaming));
 }
 
 void keep_largest(int count, std::vector<Candidate>& candidates, std::vector<RejectedSegment>& rejected) {
@@ -185,10 +192,13 @@ Segments segment_cloud(const OrganizedCloud& cloud, const SegmentationOptions& o
     if (taken.front().pixels.empty()) taken.clear();
     else taken.front().support = support_of(cloud, supports, taken.front().pixels);
   } else {
-    for (Candidate& candidate : clusters(cloud, options, classes, supports)) {
-      std::string reason = reject_reason(cloud, supports, options, readings, candidate);
-      if (reason.empty()) taken.push_back(std::move(candidate));
-      else result.rejected.push_back({static_cast<int>(candidate.pixels.size()), std::move(reason)});
+    std::vector<Candidate> candidates = clusters(cloud, options, classes, supports);
+    std::vector<std::string> reasons(candidates.size());
+    oneapi::tbb::parallel_for(std::size_t{0}, candidates.size(),
+                              [&](std::size_t k) { reasons[k] = reject_reason(cloud, supports, options, readings, candidates[k]); });
+    for (std::size_t k = 0; k < candidates.size(); ++k) {
+      if (reasons[k].empty()) taken.push_back(std::move(candidates[k]));
+      else result.rejected.push_back({static_cast<int>(candidates[k].pixels.size()), std::move(reasons[k])});
     }
     keep_largest(options.max_segments, taken, result.rejected);
   }
@@ -200,14 +210,14 @@ Segments segment_cloud(const OrganizedCloud& cloud, const SegmentationOptions& o
     result.planes.push_back(supports.planes[static_cast<std::size_t>(order[r])]);
   }
   label_pixels(classes, rank, taken, result.labels);
-  for (Candidate& candidate : taken) {
-    Segment segment;
-    segment.pixels = std::move(candidate.pixels);
-    const bool supported = candidate.support >= 0;
-    if (supported) segment.support = rank[static_cast<std::size_t>(candidate.support)];
-    describe_outline(cloud, result.labels, readings, supported ? &supports.surfaces[static_cast<std::size_t>(candidate.support)] : nullptr, segment);
-    result.segments.push_back(std::move(segment));
-  }
+  result.segments.resize(taken.size());
+  oneapi::tbb::parallel_for(std::size_t{0}, taken.size(), [&](std::size_t k) {
+    Segment& segment = result.segments[k];
+    segment.pixels = std::move(taken[k].pixels);
+    const bool supported = taken[k].support >= 0;
+    if (supported) segment.support = rank[static_cast<std::size_t>(taken[k].support)];
+    describe_outline(cloud, result.labels, readings, supported ? &supports.surfaces[static_cast<std::size_t>(taken[k].support)] : nullptr, segment);
+  });
   return result;
 }
 
