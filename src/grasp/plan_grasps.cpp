@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <optional>
 
+#include "gfp/core/spread_directions.hpp"
 #include "gfp/grasp/wrench_space.hpp"
 #include "grasp/close_jaw.hpp"
 #include "grasp/contact_candidates.hpp"
@@ -37,13 +37,11 @@ struct ClosedGrasp {
   double margin_m = 0, score = 0;
 };
 
-/// The farthest points in directions spread over the sphere (Fibonacci lattice), each once.
+/// The farthest points in directions spread over the sphere, each once.
 std::vector<Vector3d> extreme_points(const std::vector<Vector3d>& points) {
   constexpr int kDirections = 48;
   std::vector<Vector3d> extremes;
-  for (int i = 0; i < kDirections; ++i) {
-    const double z = 1 - (2 * i + 1.0) / kDirections, angle = i * std::numbers::pi * (3 - std::sqrt(5.0)), r = std::sqrt(1 - z * z);
-    const Vector3d direction(r * std::cos(angle), r * std::sin(angle), z);
+  for (const Vector3d& direction : spread_directions(kDirections)) {
     const auto farthest = std::max_element(points.begin(), points.end(), [&](const Vector3d& a, const Vector3d& b) { return direction.dot(a) < direction.dot(b); });
     if (std::find(extremes.begin(), extremes.end(), *farthest) == extremes.end()) extremes.push_back(*farthest);
   }

@@ -1,5 +1,7 @@
 #include "gfp/memory/associate.hpp"
 
+#include <oneapi/tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cstddef>
 
@@ -99,9 +101,9 @@ void add_footprints(std::vector<ObjectView>& views, const Segments& segments, co
 std::vector<ObjectView> associate(const Segments& segments, const OrganizedCloud& cloud, const NormalMap& normals,
                                   const Frame& frame, const SceneMemory& memory, const AssociateOptions& options) {
   const Eigen::Vector3d up_camera = guess_up(frame, memory);
-  std::vector<ObjectView> views;
-  for (std::size_t s = 0; s < segments.segments.size(); ++s)
-    views.push_back(cut_view(segments, static_cast<int>(s), cloud, normals, frame, up_camera, options));
+  std::vector<ObjectView> views(segments.segments.size());
+  oneapi::tbb::parallel_for(std::size_t{0}, views.size(),
+                            [&](std::size_t s) { views[s] = cut_view(segments, static_cast<int>(s), cloud, normals, frame, up_camera, options); });
 
   const std::vector<int> track_of = optimal_assignment(affinities(views, segments, frame, memory, options),
                                                        static_cast<int>(views.size()), static_cast<int>(memory.tracks.size()));

@@ -12,54 +12,6 @@ std::size_t at(int index) { return static_cast<std::size_t>(index); }
 
 }  // namespace
 
-std::vector<std::int32_t> nearest_seed(const std::vector<std::uint8_t>& seed, int width, int height) {
-  // Offsets to the nearest seed known so far, in a frame of cells that know none; two passes hand them on.
-  constexpr std::int16_t kFar = 16000;
-  struct Offset {
-    std::int16_t du = kFar, dv = kFar;
-    std::int32_t squared() const { return du * du + dv * dv; }
-  };
-  const int pitch = width + 2;
-  std::vector<Offset> offsets(at(pitch * (height + 2)));
-  for (int j = 0; j < height; ++j)
-    for (int i = 0; i < width; ++i)
-      if (seed[at(j * width + i)]) offsets[at((j + 1) * pitch + i + 1)] = {0, 0};
-  const auto adopt = [&](Offset& mine, const Offset& theirs, int du, int dv) {
-    const Offset candidate{static_cast<std::int16_t>(theirs.du + du), static_cast<std::int16_t>(theirs.dv + dv)};
-    if (theirs.du != kFar && (mine.du == kFar || candidate.squared() < mine.squared())) mine = candidate;
-  };
-  for (int j = 1; j <= height; ++j) {
-    Offset* row = &offsets[at(j * pitch)];
-    for (int i = 1; i <= width; ++i) {
-      Offset& mine = row[i];
-      adopt(mine, row[i - 1], -1, 0);
-      adopt(mine, row[i - pitch], 0, -1);
-      adopt(mine, row[i - pitch - 1], -1, -1);
-      adopt(mine, row[i - pitch + 1], 1, -1);
-    }
-    for (int i = width; i >= 1; --i) adopt(row[i], row[i + 1], 1, 0);
-  }
-  for (int j = height; j >= 1; --j) {
-    Offset* row = &offsets[at(j * pitch)];
-    for (int i = width; i >= 1; --i) {
-      Offset& mine = row[i];
-      adopt(mine, row[i + 1], 1, 0);
-      adopt(mine, row[i + pitch], 0, 1);
-      adopt(mine, row[i + pitch + 1], 1, 1);
-      adopt(mine, row[i + pitch - 1], -1, 1);
-    }
-    for (int i = 1; i <= width; ++i) adopt(row[i], row[i - 1], -1, 0);
-  }
-  std::vector<std::int32_t> nearest(seed.size(), -1);
-  for (int j = 0; j < height; ++j) {
-    for (int i = 0; i < width; ++i) {
-      const Offset& offset = offsets[at((j + 1) * pitch + i + 1)];
-      if (offset.du != kFar) nearest[at(j * width + i)] = (j + offset.dv) * width + i + offset.du;
-    }
-  }
-  return nearest;
-}
-
 ObservedTile observe(const ObjectView& view, int target_cells) {
   ObservedTile tile;
   tile.camera = view.camera;

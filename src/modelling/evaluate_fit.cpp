@@ -6,6 +6,7 @@
 
 #include "gfp/core/closest_point.hpp"
 #include "gfp/core/mesh.hpp"
+#include "gfp/core/nearest_cell.hpp"
 #include "gfp/core/raster.hpp"
 #include "gfp/memory/image_score.hpp"
 
@@ -31,12 +32,10 @@ DepthTile render(const ObservedTile& tile, const std::vector<Vector3d>& vertices
 /// nearest covered cell where the object is bare), so the distance is never underestimated.
 double fit_similarity(const ObservedTile& tile, const DepthTile& rendered, const std::vector<Vector3d>& vertices_camera,
                       const std::vector<Triangle>& triangles) {
-  std::vector<std::uint8_t> covered(at(tile.cells()));
-  for (int cell = 0; cell < tile.cells(); ++cell) covered[at(cell)] = rendered.hit(cell) ? 1 : 0;
-  const auto nearest = nearest_seed(covered, tile.width, tile.height);
+  const int reach = std::max(tile.width, tile.height);
   double sum = 0;
   for (const int cell : tile.object_cells) {
-    const int centre = nearest[at(cell)];
+    const int centre = nearest_cell(tile.width, tile.height, cell, reach, [&](int c) { return rendered.hit(c); });
     if (centre < 0) continue;
     const Vector3d point = tile.T_camera_support * tile.points[at(cell)];
     double best = 1e300;

@@ -4,9 +4,9 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 #include "gfp/core/mesh.hpp"
+#include "gfp/core/spread_directions.hpp"
 
 namespace gfp {
 namespace {
@@ -47,23 +47,12 @@ std::vector<T> every_nth(const std::vector<T>& all, int count) {
   return some;
 }
 
-/// `count` unit vectors spread evenly over the sphere (Fibonacci lattice).
-std::vector<Vector3d> directions(int count) {
-  std::vector<Vector3d> all;
-  for (int k = 0; k < count; ++k) {
-    const double z = 1 - (2 * k + 1.0) / count, angle = k * std::numbers::pi * (3 - std::sqrt(5.0));
-    const double across = std::sqrt(1 - z * z);
-    all.emplace_back(across * std::cos(angle), across * std::sin(angle), z);
-  }
-  return all;
-}
-
 /// The points on the near side of their convex hull: some plane through the point, facing the eye, has (almost) all others behind it.
 /// The inside of a cup has none, and no convex body can explain it.
 std::vector<Vector3d> near_side_of_hull(const std::vector<Vector3d>& points, const Vector3d& eye) {
   std::vector<double> depth(points.size(), std::numeric_limits<double>::infinity());
   std::vector<double> along(points.size());
-  for (const auto& n : directions(kHullDirections)) {
+  for (const auto& n : spread_directions(kHullDirections)) {
     double farthest = -std::numeric_limits<double>::infinity();
     for (std::size_t k = 0; k < points.size(); ++k) farthest = std::max(farthest, along[k] = n.dot(points[k]));
     if (n.dot(eye) < farthest) continue;  // the eye does not see this side

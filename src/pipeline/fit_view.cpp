@@ -1,5 +1,7 @@
 #include "gfp/pipeline/fit_view.hpp"
 
+#include <oneapi/tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cstddef>
 #include <utility>
@@ -23,9 +25,12 @@ constexpr const char* kSuperquadric = "superquadric";
 /// The contour is the dear part: only the best placements get one, and those that it may still bring to the front.
 std::vector<Candidate> contour_best(const ObjectView& view, const std::vector<Hypothesis>& hypotheses, const std::vector<Placement>& placements, int count,
                                     const ModellingOptions& options) {
-  std::vector<Candidate> candidates;
-  for (std::size_t k = 0; k < std::min(placements.size(), static_cast<std::size_t>(count)) && placements[k].cost < placements.front().cost + kContourGain; ++k)
-    candidates.push_back({model_contour(view, placements[k], options), hypotheses[static_cast<std::size_t>(placements[k].hypothesis)].log_prior});
+  std::size_t worth = 0;
+  while (worth < std::min(placements.size(), static_cast<std::size_t>(count)) && placements[worth].cost < placements.front().cost + kContourGain) ++worth;
+  std::vector<Candidate> candidates(worth);
+  oneapi::tbb::parallel_for(std::size_t{0}, worth, [&](std::size_t k) {
+    candidates[k] = {model_contour(view, placements[k], options), hypotheses[static_cast<std::size_t>(placements[k].hypothesis)].log_prior};
+  });
   return candidates;
 }
 

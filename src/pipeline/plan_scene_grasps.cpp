@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <utility>
 
+#include "gfp/core/spread_directions.hpp"
 #include "gfp/grasp/clear_of_points.hpp"
 #include "gfp/pipeline/stage_timings.hpp"
 
@@ -75,14 +76,25 @@ GraspScene surroundings(std::size_t self, const std::vector<GraspSubject>& subje
 
 constexpr double kSamePlaceM = 0.003;  ///< What moves by less is where it was: the gripper's clearance.
 
-/// How far `other` moved as seen from `self`, by some of its vertices; large where it has another mesh.
+/// How far a body reaches in directions spread over the sphere, frame `T`'s, from that frame's origin.
+std::vector<double> reaches(const std::vector<Eigen::Vector3d>& vertices, const Transform& T) {
+  constexpr int kDirections = 32;
+  std::vector<double> farthest;
+  for (const Eigen::Vector3d& direction : spread_directions(kDirections)) {
+    const Eigen::Vector3d turned = T.linear().transpose() * direction;
+    double most = -1e300;
+    for (std::size_t i = 0; i < vertices.size(); i += 3) most = std::max(most, turned.dot(vertices[i]));
+    farthest.push_back(most + direction.dot(T.translation()));
+  }
+  return farthest;
+}
+
+/// How far the hull of `other` moved as seen from `self`. Not its vertices: a bowl that was found turned about its axis is where it was.
 double moved_m(const GraspSubject& self, const GraspSubject& other) {
-  const auto &now = other.object->model.vertices, &before = other.before->model.vertices;
-  if (now.size() != before.size()) return 1.0;
-  const Transform T_self_other = self.object->model.T_camera_object.inverse() * other.object->model.T_camera_object;
-  const Transform T_self_other_before = self.before->model.T_camera_object.inverse() * other.before->model.T_camera_object;
+  const auto now = reaches(other.object->model.vertices, self.object->model.T_camera_object.inverse() * other.object->model.T_camera_object);
+  const auto before = reaches(other.before->model.vertices, self.before->model.T_camera_object.inverse() * other.before->model.T_camera_object);
   double farthest = 0;
-  for (std::size_t i = 0; i < now.size(); i += 16) farthest = std::max(farthest, (T_self_other * now[i] - T_self_other_before * before[i]).norm());
+  for (std::size_t k = 0; k < now.size(); ++k) farthest = std::max(farthest, std::abs(now[k] - before[k]));
   return farthest;
 }
 

@@ -1,7 +1,10 @@
 #include "gfp/registration/register_primitive.hpp"
 
+#include <oneapi/tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numbers>
 #include <numeric>
 #include <span>
@@ -34,13 +37,14 @@ struct Refinement {
   double model_sigma_m = kModelSigmaM;   ///< With which placements are scored.
 };
 
-/// Gauss-Newton with annealed robust scale; keeps the best state seen. Returns the number of steps.
+/// Gauss-Newton with annealed robust scale; keeps the best state seen, by the score on this grid. Returns the number of steps.
 int refine(VisibleFit& fit, ScoredState& best, const Refinement& stage, bool& converged) {
   PoseState state = best.state;
   double robust = stage.first_robust_m, damping = 1e-3;
   converged = false;
   int k = 0, since_best = 0;
   fit.pose(state);
+  best.score = fit.score(stage.model_sigma_m);
   for (; k < stage.iterations; ++k) {
     const Eigen::VectorXd step = fit.step({.robust_m = robust}, damping);
     state.apply(step);
@@ -154,7 +158,9 @@ class Race {
 
   void search() {
     const ObservedExtent extent = observed_extent(view_, coarse_tile_);
-    for (std::size_t h = 0; h < hypotheses_.size(); ++h) scan(h, extent);
+    std::vector<std::vector<Contender>> found(hypotheses_.size());
+    oneapi::tbb::parallel_for(std::size_t{0}, hypotheses_.size(), [&](std::size_t h) { found[h] = scan(h, extent); });
+    for (auto& of_hypothesis : found) std::move(of_hypothesis.begin(), of_hypothesis.end(), std::back_inserter(contenders_));
     drop(kFarBehind, static_cast<std::size_t>(options_.keep + 6));
     refine_all(coarse_, {kCoarseSteps, 0.03, 0.008, kCoarseSigmaM});
     drop_twins();
@@ -179,20 +185,21 @@ class Race {
   }
 
  private:
-  void scan(std::size_t h, const ObservedExtent& extent) {
+  std::vector<Contender> scan(std::size_t h, const ObservedExtent& extent) {
     const Primitive& primitive = *hypotheses_[h].primitive;
-    for (const int pose : poses_to_try(hypotheses_[h])) {
-      for (auto& scored : search_yaws(coarse_[h], extent, primitive, pose, options_.yaw_steps, kYawsPerPose)) contenders_.push_back({h, std::move(scored)});
-    }
+    std::vector<Contender> found;
+    for (const int pose : poses_to_try(hypotheses_[h]))
+      for (auto& scored : search_yaws(coarse_[h], extent, primitive, pose, options_.yaw_steps, kYawsPerPose)) found.push_back({h, std::move(scored)});
+    return found;
   }
 
+  /// Hypotheses in parallel; the contenders of one share its fit.
   void refine_all(std::vector<VisibleFit>& fits, const Refinement& stage) {
-    for (Contender& contender : contenders_) {
-      VisibleFit& fit = fits[contender.hypothesis];
-      fit.pose(contender.scored.state);
-      contender.scored.score = fit.score(stage.model_sigma_m);
-      contender.iterations = refine(fit, contender.scored, stage, contender.converged);
-    }
+    oneapi::tbb::parallel_for(std::size_t{0}, fits.size(), [&](std::size_t h) {
+      for (Contender& contender : contenders_) {
+        if (contender.hypothesis == h) contender.iterations = refine(fits[h], contender.scored, stage, contender.converged);
+      }
+    });
   }
 
   /// Sorts by standing; keeps at most `count`, none of which trails the best by more than `margin`.

@@ -3,11 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "gfp/core/nearest_cell.hpp"
+
 namespace gfp {
 namespace {
 
 using Eigen::Vector3d;
 
+constexpr int kReach = 16;                   ///< Cells over which silhouettes are drawn: farther ones have lost their say anyhow.
 constexpr double kEffectivePixels = 400;     ///< Neighbouring pixels err together: no more independent readings than this.
 
 std::size_t at(int index) { return static_cast<std::size_t>(index); }
@@ -34,31 +37,6 @@ __attribute__((target_clones("arch=x86-64-v3", "default"))) void transform_point
 
 double root_of_squares(double a, double b) { return std::sqrt(a * a + b * b); }
 
-/// The nearest cell that the model covers, in growing squares; -1 where there is none within reach.
-int nearest_hit(const DepthTile& rendered, int cell) {
-  constexpr int kReach = 16;
-  const int u = cell % rendered.width, v = cell / rendered.width;
-  int best = -1, best_squared = kReach * kReach + 1;
-  const auto look = [&](int i, int j) {
-    if (i < 0 || j < 0 || i >= rendered.width || j >= rendered.height) return;
-    const int squared = (i - u) * (i - u) + (j - v) * (j - v), there = j * rendered.width + i;
-    if (squared >= best_squared || !rendered.hit(there)) return;
-    best = there;
-    best_squared = squared;
-  };
-  for (int ring = 1; ring <= kReach && ring * ring < best_squared; ++ring) {
-    for (int k = -ring; k <= ring; ++k) {
-      look(u + k, v - ring);
-      look(u + k, v + ring);
-    }
-    for (int k = -ring + 1; k < ring; ++k) {
-      look(u - ring, v + k);
-      look(u + ring, v + k);
-    }
-  }
-  return best;
-}
-
 }  // namespace
 
 struct VisibleFit::SurfacePoint {
@@ -76,14 +54,11 @@ void PoseState::apply(const Eigen::VectorXd& step) {
 }
 
 SearchTile::SearchTile(ObservedTile observed) : ObservedTile(std::move(observed)) {
-  std::vector<std::uint8_t> is_object(at(cells()), 0);
-  for (const int cell : object_cells) is_object[at(cell)] = 1;
-  nearest_object = nearest_seed(is_object, width, height);
   rim.assign(at(cells()), 0);
+  const auto bare = [&](int cell) { return evidence[at(cell)] != Evidence::kObject; };
   for (const int cell : object_cells) {
     const int i = cell % width, j = cell / width;
-    rim[at(cell)] = (i > 0 && !is_object[at(cell - 1)]) || (i + 1 < width && !is_object[at(cell + 1)]) || (j > 0 && !is_object[at(cell - width)]) ||
-                    (j + 1 < height && !is_object[at(cell + width)]);
+    rim[at(cell)] = (i > 0 && bare(cell - 1)) || (i + 1 < width && bare(cell + 1)) || (j > 0 && bare(cell - width)) || (j + 1 < height && bare(cell + width));
   }
 }
 
@@ -203,7 +178,7 @@ void VisibleFit::add_silhouette_residuals(const FitScale& scale) {
   };
   for (const int cell : tile_.object_cells) {
     if (!tile_.rim[at(cell)] || rendered_.hit(cell)) continue;
-    const int from = nearest_hit(rendered_, cell);
+    const int from = nearest_cell(tile_.width, tile_.height, cell, kReach, [&](int c) { return rendered_.hit(c); });
     if (from >= 0) draw(from, cell);
   }
   for (int j = 0; j < tile_.height; ++j) {
@@ -212,7 +187,9 @@ void VisibleFit::add_silhouette_residuals(const FitScale& scale) {
       if (!rendered_.hit(cell) || tile_.evidence[at(cell)] == Evidence::kObject || tile_.depth[at(cell)] <= 0 || !in_free_space(tile_, rendered_, cell)) continue;
       const bool on_edge = i == 0 || j == 0 || i + 1 == tile_.width || j + 1 == tile_.height || !rendered_.hit(cell - 1) || !rendered_.hit(cell + 1) ||
                            !rendered_.hit(cell - tile_.width) || !rendered_.hit(cell + tile_.width);
-      if (on_edge && tile_.nearest_object[at(cell)] >= 0) draw(cell, tile_.nearest_object[at(cell)]);
+      if (!on_edge) continue;
+      const int to = nearest_cell(tile_.width, tile_.height, cell, kReach, [&](int c) { return tile_.evidence[at(c)] == Evidence::kObject; });
+      if (to >= 0) draw(cell, to);
     }
   }
 }

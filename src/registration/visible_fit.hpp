@@ -33,7 +33,6 @@ struct FitScale {
 /// What a fit is compared with: the observation, and where its silhouette should be drawn in to.
 struct SearchTile : ObservedTile {
   explicit SearchTile(ObservedTile observed);
-  std::vector<std::int32_t> nearest_object;  ///< Per cell: the nearest object cell in the image; -1 where there is none.
   std::vector<std::uint8_t> rim;             ///< 1 for an object cell beside one that is none: the object's own silhouette, or where it is cut.
 };
 

@@ -87,9 +87,8 @@ std::vector<std::pair<int, int>> outline_spans(const OrganizedCloud& cloud, cons
   return spans;
 }
 
-void apply_to_row(const OrganizedCloud& cloud, const FlatSurface& surface, const Kernel& kernel, int v, std::pair<int, int> inside, std::uint8_t* classes) {
+void apply_to_row(const OrganizedCloud& cloud, const FlatSurface& surface, const Kernel& kernel, int v, std::pair<int, int> inside, std::vector<float>& ground, std::uint8_t* classes) {
   std::uint8_t near[kBlock];
-  std::vector<float> ground(static_cast<std::size_t>(cloud.width));
   surface.ground.interpolate_row(v, cloud.width, ground.data());
   const auto row = static_cast<std::size_t>(v) * static_cast<std::size_t>(cloud.width);
   for (int u = 0; u < cloud.width; u += kBlock) {
@@ -108,8 +107,9 @@ void apply(const OrganizedCloud& cloud, const FlatSurface& surface, const Kernel
   const auto spans = outline_spans(cloud, surface);
   constexpr int kRows = 32;  // of one task
   oneapi::tbb::parallel_for(0, cloud.height, kRows, [&](int begin) {
+    std::vector<float> ground(static_cast<std::size_t>(cloud.width));
     for (int v = begin; v < std::min(begin + kRows, cloud.height); ++v)
-      apply_to_row(cloud, surface, kernel, v, spans[static_cast<std::size_t>(v)], &classes[static_cast<std::size_t>(v) * static_cast<std::size_t>(cloud.width)]);
+      apply_to_row(cloud, surface, kernel, v, spans[static_cast<std::size_t>(v)], ground, &classes[static_cast<std::size_t>(v) * static_cast<std::size_t>(cloud.width)]);
   });
 }
 

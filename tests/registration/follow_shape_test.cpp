@@ -54,6 +54,29 @@ TEST(FollowShape, LeavesTheYawOfABodyOfRevolutionAlone) {
   EXPECT_NEAR((view.T_camera_support.inverse() * followed.T_camera_object).translation().x(), 0.01, 0.0015);
 }
 
+// Noise is no movement: the pose is the guess to the last bit, whatever the seed.
+TEST(FollowShape, LeavesWhatStandsWhereItStands) {
+  const TriangleMesh box = test::box({0.06, 0.12, 0.15});
+  const Transform truth = placed(0, 0, 30);
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    const ObjectView view = view_of_world(transformed(box, truth), 1, seed);
+    EXPECT_EQ((follow(box, view, truth).T_camera_object.matrix() - (view.T_camera_support * truth).matrix()).cwiseAbs().maxCoeff(), 0.0) << seed;
+  }
+}
+
+// A creeping body is followed in steps that the view can tell, never farther behind than the noise explains.
+TEST(FollowShape, KeepsUpWithWhatCreeps) {
+  const TriangleMesh box = test::box({0.06, 0.12, 0.15});
+  Transform known = placed(0, 0, 30);
+  for (int frame = 1; frame <= 30; ++frame) {
+    const Transform truth = placed(0.0005 * frame, -0.0003 * frame, 30 + 0.2 * frame);
+    const ObjectView view = view_of_world(transformed(box, truth), 1, static_cast<std::uint64_t>(frame));
+    const FollowedPose followed = follow(box, view, known);
+    EXPECT_LT(farthest_m(box, view, truth, followed), 0.005) << frame;
+    known = view.T_camera_support.inverse() * followed.T_camera_object;
+  }
+}
+
 TEST(FollowShape, SaysWhatTheViewLeavesOpen) {
   const TriangleMesh can = test::cylinder(0.04, 0.12, 64, 4);
   const FollowedPose followed = follow(can, view_of_world(can, 1, 3), placed(0, 0, 0));

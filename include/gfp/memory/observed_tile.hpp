@@ -33,8 +33,4 @@ struct ObservedTile {
 /// `target_cells`: about how many object cells the grid should have; the step follows.
 ObservedTile observe(const ObjectView& view, int target_cells);
 
-/// For every cell the index of the nearest cell with seed[cell] != 0 (Euclidean on the grid, two-pass vector propagation);
-/// -1 everywhere where there is no seed.
-std::vector<std::int32_t> nearest_seed(const std::vector<std::uint8_t>& seed, int width, int height);
-
 }  // namespace gfp
