@@ -27,6 +27,9 @@ constexpr int kYawsPerPose = 3;         ///< Of a scan that stay in the race.
 constexpr double kFarBehind = 1.5;      ///< Score by which an unrefined contender may trail the best.
 constexpr double kHopeless = 0.5;       ///< The same once it is refined on the coarse grid.
 constexpr double kTwinM = 0.01;         ///< Corners of bounding boxes of the same placement.
+constexpr int kHolds = 4;               ///< Times that modes are held in,
+constexpr double kHeldShare = 0.75;     ///< to this share of the largest each time;
+constexpr double kNeverFolds = 1.5;     ///< nearer to the mean no class folds.
 constexpr int kStalled = 3;              ///< Steps without a better score: re-association jitters about the optimum.
 constexpr double kConvergedStep = 2e-4; ///< Metres, radians and log sizes alike: well below the noise.
 
@@ -62,6 +65,11 @@ int refine(VisibleFit& fit, ScoredState& best, const Refinement& stage, bool& co
   fit.pose(best.state);
   best.score = fit.score(stage.model_sigma_m);
   return k;
+}
+
+bool crosses_itself(const Primitive& primitive, const PoseState& state) {
+  const std::vector<double> modes(state.modes.data(), state.modes.data() + state.modes.size());
+  return count_self_intersections({shape(primitive, state.log_size.array().exp().matrix(), modes), primitive.topology->triangles}, 1) > 0;
 }
 
 /// What a state costs under the class, nats.
@@ -165,7 +173,9 @@ class Race {
     refine_all(coarse_, {kCoarseSteps, 0.03, 0.008, kCoarseSigmaM});
     drop_twins();
     drop(kHopeless, static_cast<std::size_t>(options_.keep));
-    refine_all(fine_, {options_.max_iterations, 0.012, 0.004});
+    const Refinement last{options_.max_iterations, 0.012, 0.004};
+    refine_all(fine_, last);
+    hold_modes_in(last);
     drop(kFarBehind, static_cast<std::size_t>(options_.keep));
   }
 
@@ -200,6 +210,19 @@ class Race {
         if (contender.hypothesis == h) contender.iterations = refine(fits[h], contender.scored, stage, contender.converged);
       }
     });
+  }
+
+  /// A class stretched too far folds into itself. Its modes are held in until it does not, and the rest is fitted anew around them.
+  void hold_modes_in(const Refinement& stage) {
+    for (Contender& contender : contenders_) {
+      const Primitive& primitive = *hypotheses_[contender.hypothesis].primitive;
+      PoseState& state = contender.scored.state;
+      for (int k = 0; k < kHolds && state.modes.size() > 0 && state.modes.cwiseAbs().maxCoeff() > kNeverFolds && crosses_itself(primitive, state); ++k) {
+        state.largest_mode = kHeldShare * state.modes.cwiseAbs().maxCoeff();
+        state.apply(Eigen::VectorXd::Zero(state.unknowns()));
+        contender.iterations += refine(fine_[contender.hypothesis], contender.scored, stage, contender.converged);
+      }
+    }
   }
 
   /// Sorts by standing; keeps at most `count`, none of which trails the best by more than `margin`.

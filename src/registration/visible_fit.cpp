@@ -10,7 +10,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr int kReach = 16;                   ///< Cells over which silhouettes are drawn: farther ones have lost their say anyhow.
+constexpr int kReach = 16;                   ///< Cells over which the model is drawn out; it is drawn in from anywhere.
 constexpr double kEffectivePixels = 400;     ///< Neighbouring pixels err together: no more independent readings than this.
 
 std::size_t at(int index) { return static_cast<std::size_t>(index); }
@@ -50,7 +50,7 @@ void PoseState::apply(const Eigen::VectorXd& step) {
   T_support_object.translation() += step.segment<3>(0);
   T_support_object.linear() = rotation_from_vector(step.segment<3>(3)) * T_support_object.linear();
   log_size += step.segment<3>(kPose);
-  modes += step.tail(modes.size());
+  modes = (modes + step.tail(modes.size())).cwiseMax(-largest_mode).cwiseMin(largest_mode);
 }
 
 SearchTile::SearchTile(ObservedTile observed) : ObservedTile(std::move(observed)) {
@@ -188,7 +188,7 @@ void VisibleFit::add_silhouette_residuals(const FitScale& scale) {
       const bool on_edge = i == 0 || j == 0 || i + 1 == tile_.width || j + 1 == tile_.height || !rendered_.hit(cell - 1) || !rendered_.hit(cell + 1) ||
                            !rendered_.hit(cell - tile_.width) || !rendered_.hit(cell + tile_.width);
       if (!on_edge) continue;
-      const int to = nearest_cell(tile_.width, tile_.height, cell, kReach, [&](int c) { return tile_.evidence[at(c)] == Evidence::kObject; });
+      const int to = nearest_cell(tile_.width, tile_.height, cell, std::max(tile_.width, tile_.height), [&](int c) { return tile_.evidence[at(c)] == Evidence::kObject; });
       if (to >= 0) draw(cell, to);
     }
   }
@@ -223,7 +223,17 @@ Eigen::VectorXd VisibleFit::step(const FitScale& scale, double damping) {
   add_contact_and_priors(scale);
   Eigen::MatrixXd damped = information_;
   damped.diagonal() *= 1.0 + damping;
-  Eigen::VectorXd step = -damped.ldlt().solve(gradient_);
+  Eigen::VectorXd downhill = -gradient_;
+  // A mode at its bound that is pushed outwards does not take part: the others make up for it.
+  for (Eigen::Index k = 0; k < state_.modes.size(); ++k) {
+    const Eigen::Index unknown = PoseState::kShape + k;
+    if (std::abs(state_.modes[k]) < state_.largest_mode || downhill[unknown] * state_.modes[k] < 0) continue;
+    damped.row(unknown).setZero();
+    damped.col(unknown).setZero();
+    damped(unknown, unknown) = 1;
+    downhill[unknown] = 0;
+  }
+  Eigen::VectorXd step = damped.ldlt().solve(downhill);
   // A step may not leave the neighbourhood in which the associations mean something.
   const double ratios[] = {step.head<3>().norm() / 0.03, step.segment<3>(3).norm() / 0.25, step.segment<3>(6).cwiseAbs().maxCoeff() / 0.25,
                            step.size() > PoseState::kShape ? step.tail(step.size() - PoseState::kShape).cwiseAbs().maxCoeff() / 1.5 : 0.0};

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Dense>
+#include <limits>
 #include <vector>
 
 #include "gfp/core/mesh.hpp"
@@ -16,6 +17,7 @@ struct PoseState {
   Transform T_support_object = Transform::Identity();
   Eigen::Vector3d log_size = Eigen::Vector3d::Zero();
   Eigen::VectorXd modes;
+  double largest_mode = std::numeric_limits<double>::infinity();  ///< Bound of their absolute values.
 
   static constexpr int kPose = 6, kShape = kPose + 3;
   int unknowns() const { return kShape + static_cast<int>(modes.size()); }

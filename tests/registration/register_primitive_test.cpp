@@ -66,6 +66,28 @@ TEST(RegisterPrimitive, FollowsTheModes) {
   EXPECT_NEAR(signed_volume({world_vertices(placement, view), placement.primitive->topology->triangles}), signed_volume(cone), 0.05 * signed_volume(cone));
 }
 
+// A can whose one mode draws its waist in and dents its base, which nobody sees: past two and a half standard deviations the dent comes
+// out at the top. What is seen is an hourglass of another class, slimmer than that.
+TEST(RegisterPrimitive, HoldsAClassBackFromFoldingIntoItself) {
+  const auto waist = [](double z) { return std::exp(-std::pow((z - 0.5) / 0.15, 2)); };
+  Primitive waisted = *test::can_primitive();
+  std::vector<Eigen::Vector3d> mode(waisted.size());
+  for (std::size_t i = 0; i < waisted.size(); ++i) {
+    const Eigen::Vector3d& p = waisted.mean[i];
+    const bool base_centre = p.head<2>().norm() < 1e-9 && p.z() < 1e-9;
+    mode[i] = base_centre ? Eigen::Vector3d(0, 0, 0.4) : Eigen::Vector3d(-0.2 * waist(p.z()) * Eigen::Vector3d(p.x(), p.y(), 0));
+  }
+  waisted.modes = {mode};
+  waisted.mode_sigma = {0.1};
+  TriangleMesh hourglass = test::cylinder(0.05, 0.14, 64, 40);
+  for (auto& p : hourglass.vertices) p.head<2>() *= 1 - 0.8 * waist(p.z() / 0.14);
+  const auto primitive = std::make_shared<const Primitive>(waisted);
+  for (const Placement& placement : register_primitive(view_from(hourglass, 25, 10, 1), all_poses(primitive))) {
+    const TriangleMesh found{shape(*primitive, placement.size_m, placement.modes), primitive->topology->triangles};
+    EXPECT_EQ(count_self_intersections(found), 0) << placement.modes[0];
+  }
+}
+
 TEST(RegisterPrimitive, FindsTheYawOfABox) {
   for (const double yaw_deg : {5.0, 30.0, 62.0}) {
     const TriangleMesh box = transformed(test::box({0.06, 0.15, 0.2}), Transform(Eigen::AngleAxisd(yaw_deg * kDegree, Eigen::Vector3d::UnitZ())));
