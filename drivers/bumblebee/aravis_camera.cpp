@@ -65,7 +65,6 @@ Result<std::unique_ptr<AravisCamera>> AravisCamera::open(const std::string& devi
   if (failed || camera->handles_->camera == nullptr)
     return failure(ErrorCode::kDeviceLost, fmt::format("Aravis: {} cannot be opened: {}", device.empty() ? "no camera" : device, failed ? failed.why() : "none answers"));
   camera->model_ = text(arv_camera_get_vendor_name(camera->handles_->camera, failed.out())) + " " + text(arv_camera_get_model_name(camera->handles_->camera, failed.out()));
-  camera->serial_ = text(arv_camera_get_device_serial_number(camera->handles_->camera, failed.out()));
   if (auto set = camera->configure(options); !set) return tl::unexpected<Error>(set.error());
   if (auto started = camera->start(options); !started) return tl::unexpected<Error>(started.error());
   return camera;
@@ -136,9 +135,9 @@ Result<Transfer> AravisCamera::next(std::chrono::milliseconds timeout) {
   return transfer;
 }
 
-std::vector<AravisDevice> list_aravis_devices() {
+std::vector<LinkedCamera> list_aravis_cameras() {
   arv_update_device_list();
-  std::vector<AravisDevice> devices;
+  std::vector<LinkedCamera> devices;
   for (unsigned i = 0; i < arv_get_n_devices(); ++i) devices.push_back({text(arv_get_device_id(i)), text(arv_get_device_vendor(i)) + " " + text(arv_get_device_model(i)), text(arv_get_device_serial_nbr(i))});
   return devices;
 }

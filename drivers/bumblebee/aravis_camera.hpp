@@ -1,44 +1,24 @@
 #pragma once
 
-#include <chrono>
-#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "bumblebee/bumblebee_options.hpp"
-#include "bumblebee/decode_stereo.hpp"
-#include "gfp/core/error.hpp"
-#include "gfp/core/time.hpp"
+#include "bumblebee/camera_link.hpp"
 
 namespace gfp {
 
-/// One complete transfer, copied out of Aravis' buffer.
-struct Transfer {
-  std::vector<std::uint8_t> bytes;
-  std::uint64_t number = 0;  ///< Of the camera's pictures since it was opened, lost ones and ones that were left out counted.
-  int width = 0, height = 0, bytes_per_pixel = 1;
-  Nanoseconds device{};    ///< Camera's clock.
-  Nanoseconds arrival{};   ///< Of its first packet, host CLOCK_MONOTONIC.
-
-  RawPicture picture() const { return {width, height, bytes_per_pixel, bytes}; }
-};
-
 /// One GenICam camera (GigE Vision or USB3 Vision), streaming from open() to its end. One thread at a time.
-class AravisCamera {
+class AravisCamera final : public CameraLink {
  public:
   /// Opens, sets, and starts. Errors: kDeviceLost (not there, or gone meanwhile), kUnsupported (a setting that it refuses).
   static Result<std::unique_ptr<AravisCamera>> open(const std::string& device, const BumblebeeOptions& options);
-  ~AravisCamera();
+  ~AravisCamera() override;
   AravisCamera(const AravisCamera&) = delete;
   AravisCamera& operator=(const AravisCamera&) = delete;
 
-  const std::string& model() const { return model_; }
-  const std::string& serial() const { return serial_; }
-
-  /// The oldest picture that waits; where more wait than a short pause explains, the newest. Errors: kTimeout, kCorruptFrame (packets are missing),
-  /// kDeviceLost (control of the camera was lost).
-  Result<Transfer> next(std::chrono::milliseconds timeout);
+  Result<Transfer> next(std::chrono::milliseconds timeout) override;
 
  private:
   struct Handles;
@@ -47,13 +27,9 @@ class AravisCamera {
   Result<void> start(const BumblebeeOptions& options);
 
   std::unique_ptr<Handles> handles_;
-  std::string model_, serial_;
+  std::string model_;
 };
 
-/// A camera that answers on the network or the bus.
-struct AravisDevice {
-  std::string id, model, serial;
-};
-std::vector<AravisDevice> list_aravis_devices();
+std::vector<LinkedCamera> list_aravis_cameras();
 
 }  // namespace gfp

@@ -8,9 +8,12 @@ namespace gfp {
 
 struct BumblebeeOptions {
   std::string sensor = "bumblebee";     ///< Name of the source, as in topics.
-  std::string device;                   ///< Aravis' name of the camera, its serial or its address; empty: the first one. Two cameras: `LEFT,RIGHT`.
-  std::string layout = "interleaved";   ///< `interleaved`: 16-bit pixels of one byte an eye; `stacked`: the left picture above the right one, or two parts; `two_devices`.
+  std::string transport = "aravis";     ///< `aravis`: GigE Vision, USB3 Vision; `firewire`: IIDC through libdc1394.
+  std::string firewire_library = "libdc1394.so.25";
+  std::string device;                   ///< Aravis' name of the camera, its serial or its address; FireWire: its GUID; empty: the first one. Two cameras: `LEFT,RIGHT`.
+  std::string layout = "interleaved";   ///< `interleaved`: pixels of one byte an eye, two or three of them; `stacked`: the left picture above the right one, or two parts; `two_devices`.
   std::string first_byte = "right";     ///< `interleaved`: whose byte comes first.
+  std::string eyes = "outer";           ///< Of three: `outer`, `left_centre` or `centre_right`; the calibration is that of the two.
   std::string bayer = "none";           ///< Pattern of the colour filter, as `rggb`; none: grey.
   std::string pixel_format;             ///< To be asked for, as `Mono16`; empty: as the camera stands.
   double rate_hz = 30;                  ///< To be asked for; 0: as the camera stands.
@@ -25,8 +28,11 @@ struct BumblebeeOptions {
 
 template <class Visitor>
 void visit_fields(BumblebeeOptions& o, Visitor&& field) {
+  field("transport", o.transport, OneOf{{"aravis", "firewire"}});
+  field("firewire_library", o.firewire_library);
   field("layout", o.layout, OneOf{{"interleaved", "stacked", "two_devices"}});
   field("first_byte", o.first_byte, OneOf{{"right", "left"}});
+  field("eyes", o.eyes, OneOf{{"outer", "left_centre", "centre_right"}});
   field("bayer", o.bayer, OneOf{{"none", "rggb", "bggr", "grbg", "gbrg"}});
   field("pixel_format", o.pixel_format);
   field("rate_hz", o.rate_hz, 0.0, 1000.0);

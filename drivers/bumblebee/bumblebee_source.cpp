@@ -9,6 +9,9 @@
 #include <utility>
 
 #include "bumblebee/aravis_camera.hpp"
+#ifdef GFP_HAS_DC1394
+#include "bumblebee/firewire_camera.hpp"
+#endif
 #include "gfp/frame/session_clock.hpp"
 
 namespace gfp {
@@ -33,6 +36,7 @@ class BumblebeeSource final : public FrameSource {
   struct Capture {
     Transfer left, right;
   };
+  Result<std::unique_ptr<CameraLink>> open_link(const std::string& device) const;
   Result<Capture> capture(std::chrono::milliseconds timeout);
   Result<Capture> pair_of_two(Transfer left, Nanoseconds deadline);
   Frame stamped(const Transfer& transfer);
@@ -41,11 +45,21 @@ class BumblebeeSource final : public FrameSource {
 
   const BumblebeeOptions options_;
   const StereoToFrame to_frame_;
-  std::unique_ptr<AravisCamera> left_, right_;      ///< The right one of two devices only.
+  std::unique_ptr<CameraLink> left_, right_;        ///< The right one of two devices only.
   std::deque<std::future<Result<Frame>>> matching_; ///< In the order of the pictures.
   SessionClock clock_;
   std::uint64_t first_of_session_ = 0, sequence_ = 0;
 };
+
+Result<std::unique_ptr<CameraLink>> BumblebeeSource::open_link(const std::string& device) const {
+  const auto as_link = [](auto camera) -> std::unique_ptr<CameraLink> { return camera; };
+  if (options_.transport == "aravis") return AravisCamera::open(device, options_).map(as_link);
+#ifdef GFP_HAS_DC1394
+  return FirewireCamera::open(device, options_).map(as_link);
+#else
+  return failure(ErrorCode::kUnsupported, "bumblebee.transport = firewire, which this build has not (it needs libdc1394-dev)");
+#endif
+}
 
 Result<void> BumblebeeSource::open() {
   close();
@@ -53,11 +67,11 @@ Result<void> BumblebeeSource::open() {
   const bool two = options_.layout == "two_devices";
   if (two && (comma == 0 || comma == std::string::npos || comma + 1 == options_.device.size()))
     return failure(ErrorCode::kInvalidArgument, fmt::format("bumblebee: input = {}, expected LEFT,RIGHT for layout two_devices", options_.device));
-  auto left = AravisCamera::open(two ? options_.device.substr(0, comma) : options_.device, options_);
+  auto left = open_link(two ? options_.device.substr(0, comma) : options_.device);
   if (!left) return tl::unexpected<Error>(left.error());
   left_ = std::move(*left);
   if (two) {
-    auto right = AravisCamera::open(options_.device.substr(comma + 1), options_);
+    auto right = open_link(options_.device.substr(comma + 1));
     if (!right) return close(), tl::unexpected<Error>(right.error());
     right_ = std::move(*right);
   }
@@ -103,7 +117,7 @@ Result<Frame> BumblebeeSource::match(const Capture& capture, Frame frame) const 
 }
 
 Result<StereoPair> BumblebeeSource::decode(const Capture& capture) const {
-  if (options_.layout == "interleaved") return decode_interleaved(capture.left.picture(), options_.first_byte);
+  if (options_.layout == "interleaved") return decode_interleaved(capture.left.picture(), options_.first_byte, options_.eyes);
   if (options_.layout == "stacked") return decode_stacked(capture.left.picture());
   auto left = decode_single(capture.left.picture()), right = decode_single(capture.right.picture());
   if (!left) return tl::unexpected<Error>(left.error());
@@ -145,7 +159,10 @@ std::unique_ptr<FrameSource> make_bumblebee_source(BumblebeeOptions options, Ste
 
 std::vector<BumblebeeDevice> list_bumblebee_devices() {
   std::vector<BumblebeeDevice> devices;
-  for (const AravisDevice& device : list_aravis_devices()) devices.push_back({device.id, device.model, device.serial});
+  for (const LinkedCamera& camera : list_aravis_cameras()) devices.push_back({camera.id, camera.model, camera.serial});
+#ifdef GFP_HAS_DC1394
+  for (const LinkedCamera& camera : list_firewire_cameras(BumblebeeOptions{}.firewire_library)) devices.push_back({camera.id, camera.model + " (transport: firewire)", camera.serial});
+#endif
   return devices;
 }
 

@@ -31,11 +31,14 @@ void for_each_window(const Image<std::uint8_t>& image, Visit&& visit) {
 
 }  // namespace
 
-Result<StereoPair> decode_interleaved(const RawPicture& raw, const std::string& first_byte) {
-  if (auto usable = check(raw, 2); !usable) return tl::unexpected<Error>(usable.error());
+Result<StereoPair> decode_interleaved(const RawPicture& raw, const std::string& first_byte, const std::string& eyes) {
+  if (auto usable = check(raw, raw.bytes_per_pixel == 3 ? 3 : 2); !usable) return tl::unexpected<Error>(usable.error());
+  const auto bytes = static_cast<std::size_t>(raw.bytes_per_pixel), last = bytes - 1;
+  // Counted from the left; a camera that sends the right eye first counts the other way.
+  std::size_t left = bytes == 3 && eyes == "centre_right" ? 1 : 0, right = bytes == 3 && eyes == "left_centre" ? 1 : last;
+  if (first_byte == "right") left = last - left, right = last - right;
   StereoPair pair{Image<std::uint8_t>(raw.width, raw.height), Image<std::uint8_t>(raw.width, raw.height), {}};
-  Image<std::uint8_t>&first = first_byte == "left" ? pair.left : pair.right, &second = first_byte == "left" ? pair.right : pair.left;
-  for (std::size_t i = 0; i < first.pixels.size(); ++i) first.pixels[i] = raw.bytes[2 * i], second.pixels[i] = raw.bytes[2 * i + 1];
+  for (std::size_t i = 0; i < pair.left.pixels.size(); ++i) pair.left.pixels[i] = raw.bytes[bytes * i + left], pair.right.pixels[i] = raw.bytes[bytes * i + right];
   return pair;
 }
 

@@ -17,9 +17,9 @@ struct RawPicture {
   std::span<const std::uint8_t> bytes;
 };
 
-/// 16-bit pixels of which one byte is the left and one the right eye's. `first_byte`: "right" or "left".
-/// Errors: kCorruptFrame (not 2 bytes a pixel, sides outside [2, kMaxImageSide], fewer bytes than pixels).
-Result<StereoPair> decode_interleaved(const RawPicture& raw, const std::string& first_byte);
+/// Pixels of a byte an eye: of two eyes, or of three from one side to the other, of which `eyes` are taken ("outer", "left_centre", "centre_right").
+/// `first_byte`: "right" or "left". Errors: kCorruptFrame (not 2 or 3 bytes a pixel, sides outside [2, kMaxImageSide], fewer bytes than pixels).
+Result<StereoPair> decode_interleaved(const RawPicture& raw, const std::string& first_byte, const std::string& eyes = "outer");
 
 /// 8-bit pixels: the left picture above the right one. Errors: as decode_interleaved(), and an odd number of rows.
 Result<StereoPair> decode_stacked(const RawPicture& raw);

@@ -22,6 +22,16 @@ TEST(DecodeStereo, InterleavedBytesBelongToOneEyeEach) {
   EXPECT_EQ(decode_interleaved({3, 2, 2, bytes}, "left")->left.pixels, pair->right.pixels);
 }
 
+TEST(DecodeStereo, OfThreeEyesTwoAreTaken) {
+  const auto bytes = counting(3 * 4);
+  const RawPicture raw{2, 2, 3, bytes};
+  EXPECT_EQ(decode_interleaved(raw, "left", "outer")->left.pixels, (std::vector<std::uint8_t>{0, 3, 6, 9}));
+  EXPECT_EQ(decode_interleaved(raw, "left", "outer")->right.pixels, (std::vector<std::uint8_t>{2, 5, 8, 11}));
+  EXPECT_EQ(decode_interleaved(raw, "right", "left_centre")->right.pixels, (std::vector<std::uint8_t>{1, 4, 7, 10}));
+  EXPECT_EQ(decode_interleaved(raw, "right", "left_centre")->left.pixels, (std::vector<std::uint8_t>{2, 5, 8, 11}));
+  EXPECT_EQ(decode_interleaved(raw, "right", "centre_right")->left.pixels, (std::vector<std::uint8_t>{1, 4, 7, 10}));
+}
+
 TEST(DecodeStereo, StackedIsLeftAboveRight) {
   const auto bytes = counting(2 * 4);
   const auto pair = decode_stacked({2, 4, 1, bytes});
