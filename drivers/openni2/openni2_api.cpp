@@ -3,6 +3,8 @@
 #include <dlfcn.h>
 #include <fmt/format.h>
 
+#include <filesystem>
+
 #include "gfp/core/mutex.hpp"
 
 namespace gfp {
@@ -10,6 +12,15 @@ namespace {
 
 Mutex shared_mutex;
 std::weak_ptr<OpenNi2Api> shared GFP_GUARDED_BY(shared_mutex);
+
+/// OpenNI2 and its drivers lose 24 kB each time they are loaded (their static objects): once loaded they stay, and are only initialised anew.
+void keep_drivers_loaded(const void* library_symbol) {
+  Dl_info info{};
+  if (dladdr(library_symbol, &info) == 0 || info.dli_fname == nullptr) return;
+  std::error_code error;
+  for (const auto& driver : std::filesystem::directory_iterator(std::filesystem::path(info.dli_fname).parent_path() / "OpenNI2" / "Drivers", error))
+    dlopen(driver.path().c_str(), RTLD_NOW | RTLD_NOLOAD | RTLD_NODELETE);
+}
 
 }  // namespace
 
@@ -27,7 +38,7 @@ Result<std::shared_ptr<OpenNi2Api>> OpenNi2Api::acquire(const std::string& libra
 
 Result<void> OpenNi2Api::load(const std::string& library) {
   name_ = library;
-  library_ = dlopen(library.c_str(), RTLD_NOW | RTLD_LOCAL);
+  library_ = dlopen(library.c_str(), RTLD_NOW | RTLD_LOCAL | RTLD_NODELETE);
   if (library_ == nullptr) return failure(ErrorCode::kUnsupported, fmt::format("OpenNI2: {}", dlerror()));
 #define GFP_OPENNI2_FIND(function)                                                            \
   function = reinterpret_cast<decltype(function)>(dlsym(library_, "oni" #function));          \
@@ -36,6 +47,7 @@ Result<void> OpenNi2Api::load(const std::string& library) {
 #undef GFP_OPENNI2_FIND
   if (Initialize(ONI_API_VERSION) != ONI_STATUS_OK) return failure(ErrorCode::kIo, "OpenNI2: " + why());
   initialised_ = true;
+  keep_drivers_loaded(reinterpret_cast<const void*>(Initialize));
   return {};
 }
 

@@ -57,6 +57,7 @@ class Examination {
     groups();
     kernel_driver();
     usb();
+    firewire();
     receive_buffer();
     network();
     clock();
@@ -99,6 +100,12 @@ class Examination {
       if (read(device / "idProduct") == "02ae" && read(device / "idVendor") == "045e") ++kinects[read(device / "busnum")];
     for (const auto& [bus, count] : kinects)
       add("USB bandwidth", count <= kUsb2Kinects ? Level::kOk : Level::kProblem, fmt::format("bus {}: Kinects = {}, expected at most {}", bus, count, kUsb2Kinects), "plug one of them into another host controller");
+  }
+
+  void firewire() {
+    for (const fs::path& device : entries(root_ / "sys/bus/pci/devices"))
+      if (read(device / "class") == "0x0c0010" && !fs::exists(root_ / "sys/bus/firewire"))
+        add("FireWire", Level::kProblem, fmt::format("{}: a controller without its driver, so no Bumblebee2 or XB3 can be seen", device.filename().string()), "modprobe firewire-ohci && echo firewire-ohci > /etc/modules-load.d/gfp.conf");
   }
 
   void receive_buffer() {

@@ -26,7 +26,7 @@ struct MachineUser {
 };
 MachineUser current_user();
 
-/// Looks at what sensors need: udev rules, groups, a kernel driver in the way, USB memory, receive buffers, network links, clock, container, processor.
+/// Looks at what sensors need: udev rules, groups, a kernel driver in the way, USB memory, FireWire, receive buffers, network links, clock, container, processor.
 /// Reads files below `root` only and changes nothing. In a fixed order.
 std::vector<Finding> examine_machine(const std::filesystem::path& root, const MachineUser& user);
 

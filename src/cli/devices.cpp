@@ -23,15 +23,18 @@ nlohmann::json to_json(const std::vector<DeviceSearch>& searches) {
 }
 
 void print(const std::vector<DeviceSearch>& searches) {
+  bool any = false;
   for (const DeviceSearch& search : searches) {
     if (!search.devices) {
       std::cout << search.driver << ": " << search.devices.error().what << "\n";
       continue;
     }
     if (search.devices->empty()) std::cout << search.driver << ": no device\n";
+    any |= !search.devices->empty();
     for (const Device& device : *search.devices)
       std::cout << search.driver << ": " << device.name << (device.serial.empty() ? "" : ", serial " + device.serial) << (device.input.empty() ? "" : ", input " + device.input) << "\n";
   }
+  if (!any) std::cout << "`gfp doctor` says what may be in the way\n";
 }
 
 }  // namespace

@@ -58,6 +58,7 @@ TEST(Doctor, EveryFaultIsFoundAndHasAFix) {
       {"sys/devices/system/clocksource/clocksource0/current_clocksource", "hpet", "clock", "hpet", "tsc", Level::kWarning},
       {"sys/class/net/eth0/speed", "100", "network", "100 Mbit/s", "cable", Level::kWarning},
       {"sys/module/usbcore/parameters/usbfs_memory_mb", "16", "USB memory", "16, expected at least 64", "usbfs_memory_mb", Level::kWarning},
+      {"sys/bus/pci/devices/0000:03:00.0/class", "0x0c0010", "FireWire", "0000:03:00.0", "modprobe firewire-ohci", Level::kProblem},
       {".dockerenv", "", "container", "/dev/bus/usb", "--device-cgroup-rule", Level::kWarning},
   };
   for (const auto& one : cases) {
