@@ -56,9 +56,11 @@ void FrameHealth::restart() {
 
 Result<void> FrameHealth::judge(const Frame& frame) {
   if (auto usable = judge_pixels(frame); !usable) return usable;
+  const bool was_slow = fault_ == fault::kSlow;
   fault_ = {};
   host_stamp_ = clock_.to_host(frame.stamps.sensor, frame.stamps.monotonic);
   judge_times(frame.stamps);
+  if (was_slow && fault_ == fault::kIntermittent) fault_ = fault::kSlow;  // the one name until it is over, not one and the other by turns
   return {};
 }
 

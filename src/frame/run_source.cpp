@@ -10,7 +10,7 @@
 namespace gfp {
 namespace {
 
-constexpr double kAbsentPause_s = 1;  // between looks for a device that is not there: it is to be back soon after it was plugged in
+constexpr double kAbsentPause_s = 0.5;  // between looks for a device that is not there: it is to be back soon after it was plugged in
 
 /// A wrong path or option stays wrong; a device that is not there may come.
 bool is_permanent(ErrorCode code) {

@@ -37,6 +37,23 @@ TEST(FrameHealth, AQuarterOfTheRateIsSlowWithinASecond) {
   EXPECT_EQ(fault_after(health, every(1 / kRate_hz, 90, 2.5)), "") << "and it recovers";
 }
 
+// At the edge between slow and intermittent the fault keeps its name: a change is a line in the log.
+TEST(FrameHealth, AFaultOfPaceDoesNotChangeItsNameByTurns) {
+  FrameHealth health({}, kRate_hz, false);
+  std::string_view last;
+  int changes = 0;
+  std::uint64_t sequence = 0;
+  double time_s = 0;
+  for (int i = 0; i < 200; ++i) {
+    time_s += i % 2 == 0 ? 0.13 : 0.047;
+    ASSERT_TRUE(health.judge(wall_frame(sequence++, time_s)));
+    changes += health.fault() != last ? 1 : 0;
+    last = health.fault();
+  }
+  EXPECT_GE(changes, 1);
+  EXPECT_LE(changes, 2) << "intermittent, then slow";
+}
+
 TEST(FrameHealth, PausesBetweenFramesAtTheRightPaceAreIntermittent) {
   FrameHealth health({}, kRate_hz, false);
   fault_after(health, every(1 / kRate_hz, 30));
