@@ -54,7 +54,7 @@ int refine(VisibleFit& fit, ScoredState& best, const Refinement& stage, bool& co
     fit.pose(state);
     const double score = fit.score(stage.model_sigma_m);
     const bool better = score < best.score;
-    if (better || robust > 1.5 * stage.last_robust_m) best = {state, best.stable_pose, better ? score : best.score};
+    if (better) best = {state, best.stable_pose, score};
     since_best = better ? 0 : since_best + 1;
     damping = better ? std::max(1e-4, damping * 0.5) : std::min(1.0, damping * 4);
     robust = std::max(stage.last_robust_m, 0.6 * robust);
