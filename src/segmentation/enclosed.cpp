@@ -7,6 +7,7 @@ namespace {
 
 constexpr std::size_t kMinPixels = 30;
 constexpr double kMinMeanHeight = 0.002;  // metres: the mean over many pixels of a support's noise is well below
+constexpr double kMinRise = 0.0015;       // metres above what is around the object: a table is not warped like that over an object's width
 
 // The object's bounding box: pixels on a support that are still unvisited are 1.
 struct Box {
@@ -47,26 +48,50 @@ std::vector<int> flood(Box& box, int seed) {
 
 }  // namespace
 
+namespace {
+
+/// Mean heights over a region: above the support as it is warped, and above its plain plane.
+struct Heights {
+  double warped = 0, plain = 0;
+  std::size_t pixels = 0;
+
+  void add(const OrganizedCloud& cloud, const FlatSurface& support, std::int32_t pixel) {
+    warped += support.height(cloud, pixel);
+    plain += support.up.dot(cloud.point(static_cast<std::size_t>(pixel)).cast<double>()) + support.camera_height_m;
+    ++pixels;
+  }
+  double mean_warped() const { return warped / static_cast<double>(std::max<std::size_t>(1, pixels)); }
+  double mean_plain() const { return plain / static_cast<double>(std::max<std::size_t>(1, pixels)); }
+};
+
+}  // namespace
+
 void take_enclosed(const OrganizedCloud& cloud, const std::vector<std::uint8_t>& classes, const FlatSurface& support, PixelList& pixels) {
   Box box = open_pixels(cloud, classes, pixels);
+  const auto in_image = [&](int i) { return (box.v0 + i / box.width) * cloud.width + box.u0 + i % box.width; };
+  Heights around;
+  const auto flood_from = [&](int border) {
+    if (box.open[static_cast<std::size_t>(border)] == 0) return;
+    for (const int i : flood(box, border)) around.add(cloud, support, in_image(i));
+  };
   const int last_row = (box.height - 1) * box.width;
   for (int u = 0; u < box.width; ++u)
-    for (const int border : {u, last_row + u})
-      if (box.open[static_cast<std::size_t>(border)] != 0) flood(box, border);
+    for (const int border : {u, last_row + u}) flood_from(border);
   for (int v = 0; v < box.height; ++v)
-    for (const int border : {v * box.width, v * box.width + box.width - 1})
-      if (box.open[static_cast<std::size_t>(border)] != 0) flood(box, border);
+    for (const int border : {v * box.width, v * box.width + box.width - 1}) flood_from(border);
   const std::size_t before = pixels.size();
   for (int i = 0; i < static_cast<int>(box.open.size()); ++i) {
     if (box.open[static_cast<std::size_t>(i)] == 0) continue;
     std::vector<int> region = flood(box, i);
     if (region.size() < kMinPixels) continue;
-    double sum = 0;
+    Heights heights;
     for (int& r : region) {
-      r = (box.v0 + r / box.width) * cloud.width + box.u0 + r % box.width;
-      sum += support.height(cloud, r);
+      r = in_image(r);
+      heights.add(cloud, support, r);
     }
-    if (sum > kMinMeanHeight * static_cast<double>(region.size())) pixels.insert(pixels.end(), region.begin(), region.end());
+    // The flat middle of a plate may have been taken for a warp of the table.
+    const bool rises = around.pixels >= kMinPixels && heights.mean_plain() - around.mean_plain() > kMinRise;
+    if (rises || heights.mean_warped() > kMinMeanHeight) pixels.insert(pixels.end(), region.begin(), region.end());
   }
   if (pixels.size() != before) std::sort(pixels.begin(), pixels.end());
 }
