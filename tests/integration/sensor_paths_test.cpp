@@ -2,7 +2,10 @@
 // compared with the same frame taken directly.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
+#include <utility>
+#include <vector>
 
 #include "app/builtin_library.hpp"
 #include "app/input.hpp"
@@ -115,6 +118,17 @@ class SensorPaths : public ::testing::Test {
     return {};
   }
 
+  /// How much the fits of one scene differ by its noise alone: least and greatest IoU of each object over some frames.
+  static std::vector<std::pair<double, double>> spread() {
+    SyntheticSource source(scene_options(6));
+    std::vector<std::pair<double, double>> range(shapes_->size(), {1.0, 0.0});
+    for (auto frame = source.grab(10s); frame; frame = source.grab(10s)) {
+      const std::vector<Seen> seen = compare(scene_of(*frame));
+      for (std::size_t i = 0; i < seen.size(); ++i) range[i] = {std::min(range[i].first, seen[i].iou_filled), std::max(range[i].second, seen[i].iou_filled)};
+    }
+    return range;
+  }
+
   fs::path temporary(const char* name) const { return fs::path(::testing::TempDir()) / name; }
 
   static inline const Frame* frame_ = nullptr;
@@ -127,6 +141,7 @@ TEST_F(SensorPaths, TheSceneIsSeenAtAll) {
   for (const Seen& object : *direct_) EXPECT_GT(object.iou_filled, 0.5) << object.class_name;
 }
 
+// Eleven bits of disparity are not the frame itself: another noise, within which the same scene gives the same objects.
 TEST_F(SensorPaths, FakenectFolder) {
   const fs::path folder = temporary("sensor_paths_fakenect");
   fs::remove_all(folder);
@@ -135,7 +150,14 @@ TEST_F(SensorPaths, FakenectFolder) {
   options.camera = CameraFile{default_kinect_camera(), {}, Transform::Identity()};
   const auto input = open_input(folder.string(), options);
   ASSERT_TRUE(input) << input.error().what;
-  expect_same_objects(first_frame(*input->source), *direct_, "fakenect");
+  const std::vector<Seen> seen = compare(scene_of(first_frame(*input->source)));
+  const auto range = spread();
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    EXPECT_EQ(seen[i].class_name, (*direct_)[i].class_name) << "object " << i;
+    EXPECT_GT(seen[i].iou_filled, range[i].first - 0.03) << "object " << i;
+    EXPECT_LT(seen[i].iou_filled, range[i].second + 0.03) << "object " << i;
+    std::printf("fakenect: object %zu is a %s, IoU %.3f (directly %.3f to %.3f)\n", i, seen[i].class_name.c_str(), seen[i].iou_filled, range[i].first, range[i].second);
+  }
   fs::remove_all(folder);
 }
 
