@@ -32,6 +32,8 @@ DepthTile render(const ObservedTile& tile, const std::vector<Vector3d>& vertices
 /// nearest covered cell where the object is bare), so the distance is never underestimated.
 double fit_similarity(const ObservedTile& tile, const DepthTile& rendered, const std::vector<Vector3d>& vertices_camera,
                       const std::vector<Triangle>& triangles) {
+  const bool seen = std::any_of(rendered.triangle.begin(), rendered.triangle.end(), [](std::int32_t t) { return t >= 0; });
+  if (!seen) return 0;  // else every cell would look through the whole tile
   const int reach = std::max(tile.width, tile.height);
   double sum = 0;
   for (const int cell : tile.object_cells) {

@@ -163,6 +163,7 @@ void VisibleFit::add_surface_residuals(const FitScale& scale) {
 }
 
 void VisibleFit::add_silhouette_residuals(const FitScale& scale) {
+  if (tile_.object_cells.empty()) return;  // nothing to be drawn out or in to
   const Eigen::Matrix3d R_support_camera = tile_.T_camera_support.linear().transpose();
   const double share = std::min(1.0, kEffectivePixels / static_cast<double>(std::max<std::size_t>(1, tile_.object_cells.size())));
 

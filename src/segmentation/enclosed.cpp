@@ -46,10 +46,6 @@ std::vector<int> flood(Box& box, int seed) {
   return region;
 }
 
-}  // namespace
-
-namespace {
-
 /// Mean heights over a region: above the support as it is warped, and above its plain plane.
 struct Heights {
   double warped = 0, plain = 0;
@@ -57,7 +53,7 @@ struct Heights {
 
   void add(const OrganizedCloud& cloud, const FlatSurface& support, std::int32_t pixel) {
     warped += support.height(cloud, pixel);
-    plain += support.up.dot(cloud.point(static_cast<std::size_t>(pixel)).cast<double>()) + support.camera_height_m;
+    plain += support.plane_height(cloud, pixel);
     ++pixels;
   }
   double mean_warped() const { return warped / static_cast<double>(std::max<std::size_t>(1, pixels)); }

@@ -87,7 +87,9 @@ std::vector<std::pair<int, int>> outline_spans(const OrganizedCloud& cloud, cons
   return spans;
 }
 
-void apply_to_row(const OrganizedCloud& cloud, const FlatSurface& surface, const Kernel& kernel, int v, std::pair<int, int> inside, std::vector<float>& ground, std::uint8_t* classes) {
+// `inside`: the row's span of outline_spans(); `ground` is scratch, a row long; `classes` are the row's.
+void apply_to_row(const OrganizedCloud& cloud, const FlatSurface& surface, const Kernel& kernel, int v, std::pair<int, int> inside,
+                  std::vector<float>& ground, std::uint8_t* classes) {
   std::uint8_t near[kBlock];
   surface.ground.interpolate_row(v, cloud.width, ground.data());
   const auto row = static_cast<std::size_t>(v) * static_cast<std::size_t>(cloud.width);

@@ -18,9 +18,12 @@ struct FlatSurface {
   std::vector<Eigen::Vector3d> edges;  ///< Inner unit normals of the outline's edges, camera frame, in the plane,
   std::vector<double> edge_offsets_m;  ///< and edge . p + offset >= 0 inside. Counter-clockwise about `up`.
   std::vector<Eigen::Vector3d> corners;  ///< Of the outline, on the plane, camera frame.
+  /// Above the plain plane, and above the surface as it is warped.
+  double plane_height(const OrganizedCloud& cloud, std::int32_t pixel) const {
+    return up.dot(cloud.point(static_cast<std::size_t>(pixel)).cast<double>()) + camera_height_m;
+  }
   double height(const OrganizedCloud& cloud, std::int32_t pixel) const {
-    return up.dot(cloud.point(static_cast<std::size_t>(pixel)).cast<double>()) + camera_height_m -
-           static_cast<double>(ground.at(pixel % cloud.width, pixel / cloud.width));
+    return plane_height(cloud, pixel) - static_cast<double>(ground.at(pixel % cloud.width, pixel / cloud.width));
   }
   double band(double z) const { return band_m + band_per_m2 * z * z; }
   /// Distance to the nearest edge of the outline's prism, positive inside.
