@@ -19,11 +19,8 @@ struct GaugeAt {
 
 GaugeAt gauge_in_body(const Superquadric& s, const Vector3d& body) {
   const Vector3d unit = body.cwiseQuotient(s.half_axes_m);
-  const PNorm across = p_norm(std::abs(unit.x()), std::abs(unit.y()), 2 / s.epsilon2);
-  const PNorm along = p_norm(across.value, std::abs(unit.z()), 2 / s.epsilon1);
-  const Vector3d slope(along.by_a * across.by_a, along.by_a * across.by_b, along.by_b);
-  return {along.value, Vector3d(std::copysign(slope.x(), unit.x()), std::copysign(slope.y(), unit.y()), std::copysign(slope.z(), unit.z()))
-                           .cwiseQuotient(s.half_axes_m)};
+  const NestedNorm norm = nested_norm(unit.x(), unit.y(), unit.z(), 2 / s.epsilon1, 2 / s.epsilon2);
+  return {norm.value, Vector3d(norm.slope[0], norm.slope[1], norm.slope[2]).cwiseQuotient(s.half_axes_m)};
 }
 
 Vector3d to_body(const Superquadric& s, const Vector3d& point) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 
 #include "gfp/core/elementary.hpp"
 
@@ -30,6 +31,22 @@ inline PNorm p_norm(double a, double b, double p) {
   norm.by_b = b > a ? by_larger : by_smaller;
   norm.by_p = norm.value / p * (power * log_ratio / (1 + power) - log_sum / p);
   return norm;
+}
+
+/// The p1-norm of (p2-norm of (x, y), z), signs and all: the gauge of a superquadric with half axes 1, and for the dual exponents its reach.
+struct NestedNorm {
+  double value = 0;
+  double slope[3] = {};  ///< Derivative by x, y, z.
+  double by_p1 = 0, by_p2 = 0;
+};
+
+inline __attribute__((always_inline)) NestedNorm nested_norm(double x, double y, double z, double p1, double p2) {
+  const PNorm across = p_norm(std::abs(x), std::abs(y), p2);
+  const PNorm whole = p_norm(across.value, std::abs(z), p1);
+  return {whole.value,
+          {std::copysign(whole.by_a * across.by_a, x), std::copysign(whole.by_a * across.by_b, y), std::copysign(whole.by_b, z)},
+          whole.by_p,
+          whole.by_a * across.by_p};
 }
 
 }  // namespace gfp

@@ -11,10 +11,6 @@ namespace {
 
 using Eigen::Vector3d;
 
-Vector3d with_signs_of(const Vector3d& magnitude, const Vector3d& sign) {
-  return {std::copysign(magnitude.x(), sign.x()), std::copysign(magnitude.y(), sign.y()), std::copysign(magnitude.z(), sign.z())};
-}
-
 /// A superquadric as loops over many points want it; rotation row by row, frame to body.
 struct Body {
   double rotation[9], centre[3], per_half_axis[3], p1, p2;
@@ -41,14 +37,11 @@ inline __attribute__((always_inline)) GaugeInBody gauge_in_body(const Body& s, d
     g.body[k] = s.rotation[3 * k] * (x - s.centre[0]) + s.rotation[3 * k + 1] * (y - s.centre[1]) + s.rotation[3 * k + 2] * (z - s.centre[2]);
     unit[k] = g.body[k] * s.per_half_axis[k];
   }
-  const PNorm across = p_norm(std::abs(unit[0]), std::abs(unit[1]), s.p2);
-  const PNorm whole = p_norm(across.value, std::abs(unit[2]), s.p1);
-  g.gradient[0] = std::copysign(whole.by_a * across.by_a, unit[0]) * s.per_half_axis[0];
-  g.gradient[1] = std::copysign(whole.by_a * across.by_b, unit[1]) * s.per_half_axis[1];
-  g.gradient[2] = std::copysign(whole.by_b, unit[2]) * s.per_half_axis[2];
-  g.value = whole.value;
-  g.by_p1 = whole.by_p;
-  g.by_p2 = whole.by_a * across.by_p;
+  const NestedNorm norm = nested_norm(unit[0], unit[1], unit[2], s.p1, s.p2);
+  for (int k = 0; k < 3; ++k) g.gradient[k] = norm.slope[k] * s.per_half_axis[k];
+  g.value = norm.value;
+  g.by_p1 = norm.by_p1;
+  g.by_p2 = norm.by_p2;
   return g;
 }
 
@@ -146,15 +139,14 @@ LinearisedLength linearised_reach(const Superquadric& s, const Vector3d& directi
   const Vector3d body = s.pose.linear().transpose() * direction;
   const Vector3d scaled = body.cwiseProduct(s.half_axes_m);
   const double q1 = 2 / (2 - s.epsilon1), q2 = 2 / (2 - s.epsilon2);  // dual exponents; epsilon < 2 by the limits
-  const PNorm across = p_norm(std::abs(scaled.x()), std::abs(scaled.y()), q2);
-  const PNorm whole = p_norm(across.value, std::abs(scaled.z()), q1);
-  const Vector3d by_scaled = with_signs_of({whole.by_a * across.by_a, whole.by_a * across.by_b, whole.by_b}, scaled);
+  const NestedNorm norm = nested_norm(scaled.x(), scaled.y(), scaled.z(), q1, q2);
+  const Vector3d by_scaled(norm.slope[0], norm.slope[1], norm.slope[2]);
   LinearisedLength length;
-  length.value = whole.value;
+  length.value = norm.value;
   length.derivative.segment<3>(kRotation) = by_scaled.cwiseProduct(s.half_axes_m).cross(body);
   length.derivative.segment<3>(kLogAxes) = by_scaled.cwiseProduct(scaled);
-  length.derivative[kEpsilon1] = whole.by_p * 0.5 * q1 * q1;
-  length.derivative[kEpsilon2] = whole.by_a * across.by_p * 0.5 * q2 * q2;
+  length.derivative[kEpsilon1] = norm.by_p1 * 0.5 * q1 * q1;
+  length.derivative[kEpsilon2] = norm.by_p2 * 0.5 * q2 * q2;
   return length;
 }
 
