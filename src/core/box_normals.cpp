@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <cstring>
 #include <limits>
 #include <vector>
 
@@ -10,164 +11,169 @@ namespace gfp {
 namespace {
 
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
-constexpr int kLanes = 32;  // pixels of one inner loop
 constexpr float kMinReadings = 6;
+constexpr float kMaxInverse = 16;  // 1/m
 
-// The rectangle grown by the box, in rows of `stride` floats: 1/z (0 where there is no reading) and, for the clean boxes,
-// the rows' moments. Outside the image there are no readings.
-struct Tile {
-  int width, height, stride;
-  std::vector<float> inverse, broken, row_sum, row_moment, row_broken;
+// Eight pixels in one register (two of SSE2's).
+constexpr int kGroup = 8;
+typedef std::int32_t Ints __attribute__((vector_size(4 * kGroup), aligned(4), may_alias));
+typedef float Floats __attribute__((vector_size(4 * kGroup), aligned(4), may_alias));
 
-  Tile(int w, int h) : width(w), height(h), stride(w + kLanes) {
-    for (auto* plane : {&inverse, &broken, &row_sum, &row_moment, &row_broken})
-      plane->assign(static_cast<std::size_t>(stride) * static_cast<std::size_t>(h), 0.0F);
-  }
-  std::size_t at(int row, int column) const { return static_cast<std::size_t>(row) * static_cast<std::size_t>(stride) + static_cast<std::size_t>(column); }
-};
+// The loops below read and write whole groups: rows are this much longer than what they hold.
+constexpr int kSpare = 4 * kGroup;
 
+// 1/z in steps of `per_step` metres^-1; 0 where there is no reading.
 __attribute__((target_clones("arch=x86-64-v3", "default")))
-void invert_row(const float* z, int count, float* __restrict inverse) {
-  for (int i = 0; i < count; ++i) inverse[i] = z[i] > 0.0F ? 1.0F / z[i] : 0.0F;
+void invert_row(const float* z, int count, float steps_per_m, std::int32_t* __restrict inverse) {
+  constexpr float kNearest = 1.0F / kMaxInverse;
+  for (int i = 0; i < count; ++i) inverse[i] = z[i] >= kNearest ? static_cast<std::int32_t>(steps_per_m / z[i] + 0.5F) : 0;
 }
 
 // A pixel is broken where it has no reading or where its right or lower neighbour is on another surface (or has none).
 __attribute__((target_clones("arch=x86-64-v3", "default")))
-void break_row(const float* w, const float* below, int count, float step, float* __restrict broken) {
+void break_row(const std::int32_t* w, const std::int32_t* below, int count, float step, std::uint8_t* __restrict broken) {
   for (int i = 0; i < count; ++i) {
-    const float right = std::abs(w[i + 1] - w[i]), down = std::abs(below[i] - w[i]), limit = step * w[i];
-    broken[i] = ((w[i] > 0.0F) & (right <= limit) & (down <= limit)) ? 0.0F : 1.0F;
+    const std::int32_t right = std::abs(w[i + 1] - w[i]), down = std::abs(below[i] - w[i]);
+    const auto limit = static_cast<std::int32_t>(step * static_cast<float>(w[i]));
+    broken[i] = static_cast<std::uint8_t>((w[i] <= 0) | (right > limit) | (down > limit));
   }
 }
 
-// Sums over the 2r + 1 pixels around each of `count` pixels of a row: of w, of offset * w, and of the broken flags.
+// to[i] |= from[i], for rows that are moved against each other.
 __attribute__((target_clones("arch=x86-64-v3", "default")))
-void row_moments(const float* w, const float* broken, int count, int radius, float* __restrict sum, float* __restrict moment, float* __restrict breaks) {
-  for (int i = 0; i < count; ++i) {
-    sum[i] = w[i];
-    moment[i] = 0.0F;
-    breaks[i] = broken[i];
-  }
-  for (int k = 1; k <= radius; ++k) {
-    const float offset = static_cast<float>(k);
-    for (int i = 0; i < count; ++i) {
-      sum[i] += w[i + k] + w[i - k];
-      moment[i] += offset * (w[i + k] - w[i - k]);
-      breaks[i] += broken[i + k] + broken[i - k];
+void mark_row(const std::uint8_t* from, int count, std::uint8_t* __restrict to) {
+  for (int i = 0; i < count; ++i) to[i] |= from[i];
+}
+
+// Sums over the 2r + 1 pixels around each pixel of a row: of w and of offset * w.
+__attribute__((target_clones("arch=x86-64-v3", "default")))
+void row_moments(const std::int32_t* w, int count, int radius, std::int32_t* __restrict sum, std::int32_t* __restrict moment) {
+  for (int i = 0; i < count; i += kGroup) {
+    const auto at = [&](int offset) __attribute__((always_inline)) -> const Ints* { return reinterpret_cast<const Ints*>(w + i + offset); };
+    Ints total = *at(0), further = {}, weighted = {};
+    for (int k = radius; k >= 1; --k) {  // offset k is counted in k of the partial sums
+      const Ints right = *at(k), left = *at(-k);
+      total += right + left;
+      further += right - left;
+      weighted += further;
     }
+    *reinterpret_cast<Ints*>(sum + i) = total;
+    *reinterpret_cast<Ints*>(moment + i) = weighted;
   }
 }
 
-// Eight pixels in one register (two of SSE2's): sums over a box stay in registers from the first tap to the last.
-constexpr int kGroup = 8;
-typedef float Group __attribute__((vector_size(4 * kGroup), aligned(4), may_alias));
-typedef std::int32_t GroupMask __attribute__((vector_size(4 * kGroup), aligned(4), may_alias));
+// Per column, sums over the box around the row that is looked at: of w, of its column offset and of its row offset times w.
+struct Sums {
+  std::int32_t *total, *across, *down;
+};
 
+// A row's sums over the box's columns.
+struct RowSums {
+  const std::int32_t *total, *across;
+};
+
+// One row further down: `in` joins the box, `out` leaves it. Every row's offset shrinks by one, which takes the total from `down`.
+__attribute__((target_clones("arch=x86-64-v3", "default")))
+void slide(Sums sums, RowSums in, RowSums out, int count, int radius) {
+  for (int i = 0; i < count; i += kGroup) {
+    const auto at = [i](const std::int32_t* row) __attribute__((always_inline)) -> const Ints* { return reinterpret_cast<const Ints*>(row + i); };
+    const auto to = [i](std::int32_t* row) __attribute__((always_inline)) -> Ints* { return reinterpret_cast<Ints*>(row + i); };
+    const Ints joins = *at(in.total), leaves = *at(out.total), before = *at(sums.total);
+    *to(sums.down) += radius * (joins + leaves) + leaves - before;
+    *to(sums.total) = before + joins - leaves;
+    *to(sums.across) += *at(in.across) - *at(out.across);
+  }
+}
+
+// Of 1/z (in steps): its slopes per pixel and its value at the centre.
 struct Slopes {
-  float du[kLanes], dv[kLanes], mean[kLanes], clean[kLanes];  // of 1/z per pixel; 1/z at the centre; whether the box is whole
+  float *du, *dv, *mean;
 };
 
 __attribute__((target_clones("arch=x86-64-v3", "default")))
-void clean_slopes(const float* sum, const float* moment, const float* breaks, std::ptrdiff_t stride, int radius, Slopes& out) {
-  const float side = static_cast<float>(2 * radius + 1);
-  const float second = side * static_cast<float>(radius * (radius + 1) * (2 * radius + 1)) / 3.0F;  // sum of offset^2 over the box
-  const float per_second = 1.0F / second, per_pixel = 1.0F / (side * side);
-  for (int g = 0; g < kLanes; g += kGroup) {
-    const auto at = [g](const float* plane) __attribute__((always_inline)) -> const Group* { return reinterpret_cast<const Group*>(plane + g); };
-    Group total = *at(sum), mu = *at(moment), mv = {}, broken = *at(breaks);
-    for (int k = 1; k <= radius; ++k) {
-      const std::ptrdiff_t down = k * stride;
-      const Group below = *at(sum + down), above = *at(sum - down);
-      total += below + above;
-      mu += *at(moment + down) + *at(moment - down);
-      mv += static_cast<float>(k) * (below - above);
-      broken += *at(breaks + down) + *at(breaks - down);
-    }
-    *reinterpret_cast<Group*>(out.du + g) = mu * per_second;
-    *reinterpret_cast<Group*>(out.dv + g) = mv * per_second;
-    *reinterpret_cast<Group*>(out.mean + g) = total * per_pixel;
-    for (int i = 0; i < kGroup; ++i) out.clean[g + i] = broken[i] == 0.0F ? 1.0F : 0.0F;
+void whole_slopes(const Sums& sums, int count, float per_second, float per_pixel, const Slopes& out) {
+  const std::int32_t *total = sums.total, *across = sums.across, *down = sums.down;
+  float *__restrict du = out.du, *__restrict dv = out.dv, *__restrict mean = out.mean;
+  for (int i = 0; i < count; ++i) {
+    du[i] = static_cast<float>(across[i]) * per_second;
+    dv[i] = static_cast<float>(down[i]) * per_second;
+    mean[i] = static_cast<float>(total[i]) * per_pixel;
   }
 }
 
-// What the taps on the centre's surface sum up to, for one group of pixels.
-struct MaskedSums {
-  float n[kGroup], su[kGroup], sv[kGroup], suu[kGroup], suv[kGroup], svv[kGroup], sw[kGroup], suw[kGroup], svw[kGroup];
+constexpr int kTaps = 2;  // to each side
+
+// The five rows of taps around a row, and the columns between two taps.
+struct TapRows {
+  const std::int32_t* row[2 * kTaps + 1];
+  int spacing;
 };
 
+// Where the box is not whole: least squares over the taps on the centre's surface. Not enough of them: NaN.
 __attribute__((target_clones("arch=x86-64-v3", "default")))
-void sum_taps(const float* w, std::ptrdiff_t stride, int radius, float step, MaskedSums& out) {
-  const Group centre = *reinterpret_cast<const Group*>(w), limit = step * centre;
-  Group n = {}, su = {}, sv = {}, suu = {}, suv = {}, svv = {}, sw = {}, suw = {}, svw = {};
-  const int spacing = radius >= 4 ? 2 : 1;
-  for (int dv = -radius; dv <= radius; dv += spacing) {
-    Group row_n = {}, row_u = {}, row_uu = {}, row_w = {}, row_uw = {};
-    const float* row = w + dv * stride;
-    for (int du = -radius; du <= radius; du += spacing) {
-      const float fu = static_cast<float>(du);
-      const Group difference = *reinterpret_cast<const Group*>(row + du) - centre;
-      const GroupMask mask = (difference <= limit) & (difference >= -limit);
-      const Group on = -__builtin_convertvector(mask, Group), d = (Group)((GroupMask)difference & mask);
-      row_n += on;
-      row_u += fu * on;
-      row_uu += fu * fu * on;
-      row_w += d;
-      row_uw += fu * d;
+void broken_slopes(const TapRows& taps, const std::uint8_t* broken, int count, float step, const Slopes& out) {
+  for (int i = 0; i < count; i += kGroup) {
+    std::uint64_t any;
+    std::memcpy(&any, broken + i, sizeof any);
+    if (any == 0) continue;
+    const Ints centre = *reinterpret_cast<const Ints*>(taps.row[kTaps] + i);
+    const Ints limit = __builtin_convertvector(step * __builtin_convertvector(centre, Floats), Ints);
+    Ints n = {}, u = {}, v = {}, uu = {}, uv = {}, vv = {}, w = {}, uw = {}, vw = {};  // n to vv of masks: negative counts
+#pragma GCC unroll 5
+    for (int row = -kTaps; row <= kTaps; ++row) {
+      Ints mask[2 * kTaps + 1], difference[2 * kTaps + 1];
+#pragma GCC unroll 5
+      for (int tap = 0; tap <= 2 * kTaps; ++tap) {
+        const Ints d = *reinterpret_cast<const Ints*>(taps.row[row + kTaps] + i + (tap - kTaps) * taps.spacing) - centre;
+        mask[tap] = (d <= limit) & (d >= -limit);
+        difference[tap] = d & mask[tap];
+      }
+      const Ints outer = mask[0] + mask[4], inner = mask[1] + mask[3];
+      const Ints row_n = outer + inner + mask[2], row_u = 2 * (mask[4] - mask[0]) + mask[3] - mask[1];
+      const Ints row_w = difference[0] + difference[1] + difference[2] + difference[3] + difference[4];
+      n += row_n;
+      u += row_u;
+      uu += 4 * outer + inner;
+      w += row_w;
+      uw += 2 * (difference[4] - difference[0]) + difference[3] - difference[1];
+      v += row * row_n;
+      uv += row * row_u;
+      vv += row * row * row_n;
+      vw += row * row_w;
     }
-    const float fv = static_cast<float>(dv);
-    n += row_n;
-    su += row_u;
-    suu += row_uu;
-    sw += row_w;
-    suw += row_uw;
-    sv += fv * row_n;
-    suv += fv * row_u;
-    svv += fv * fv * row_n;
-    svw += fv * row_w;
-  }
-  const auto put = [](const Group& from, float* to) __attribute__((always_inline)) { *reinterpret_cast<Group*>(to) = from; };
-  put(n, out.n), put(su, out.su), put(sv, out.sv), put(suu, out.suu), put(suv, out.suv), put(svv, out.svv), put(sw, out.sw), put(suw, out.suw), put(svw, out.svw);
-}
-
-// The same where the box is not whole: least squares over the taps on the centre's surface. Not enough of them: NaN.
-__attribute__((target_clones("arch=x86-64-v3", "default")))
-void solve_masked(const float* w, const MaskedSums& s, float* __restrict du, float* __restrict dv, float* __restrict mean, const float* clean_flags) {
-  for (int i = 0; i < kGroup; ++i) {
-    const float inverse_n = 1.0F / std::max(s.n[i], 1.0F);
-    const float mu = s.su[i] * inverse_n, mv = s.sv[i] * inverse_n, mw = s.sw[i] * inverse_n;
-    const float cuu = s.suu[i] - s.su[i] * mu, cuv = s.suv[i] - s.su[i] * mv, cvv = s.svv[i] - s.sv[i] * mv;
-    const float cuw = s.suw[i] - s.su[i] * mw, cvw = s.svw[i] - s.sv[i] * mw;
-    const float determinant = cuu * cvv - cuv * cuv;
-    const bool solvable = (s.n[i] >= kMinReadings) & (determinant > 0.05F * (cuu + cvv) * (cuu + cvv) * 0.25F) & (w[i] > 0.0F);
-    const float a = (cuw * cvv - cvw * cuv) / determinant, b = (cvw * cuu - cuw * cuv) / determinant;
-    const bool clean = clean_flags[i] != 0.0F;
-    du[i] = clean ? du[i] : solvable ? a : kNaN;
-    dv[i] = clean ? dv[i] : solvable ? b : kNaN;
-    mean[i] = clean ? mean[i] : w[i] + mw - a * mu - b * mv;
+#define GFP_REAL(sum) __builtin_convertvector(sum, Floats)
+    const Floats readings = -GFP_REAL(n), per_reading = 1.0F / readings;
+    const Floats su = -GFP_REAL(u), sv = -GFP_REAL(v), mu = su * per_reading, mv = sv * per_reading, mw = GFP_REAL(w) * per_reading;
+    const Floats cuu = -GFP_REAL(uu) - su * mu, cuv = -GFP_REAL(uv) - su * mv, cvv = -GFP_REAL(vv) - sv * mv;
+    const Floats cuw = GFP_REAL(uw) - su * mw, cvw = GFP_REAL(vw) - sv * mw;
+    const Floats determinant = cuu * cvv - cuv * cuv, per_determinant = 1.0F / determinant, trace = cuu + cvv;
+    const Floats a = (cuw * cvv - cvw * cuv) * per_determinant, b = (cvw * cuu - cuw * cuv) * per_determinant;
+    const Floats mean = GFP_REAL(centre) + mw - a * mu - b * mv;
+#undef GFP_REAL
+    const Ints solvable = (readings >= kMinReadings) & (determinant > 0.0125F * trace * trace) & (centre > 0);
+    const float per_spacing = 1.0F / static_cast<float>(taps.spacing);
+    for (int k = 0; k < kGroup; ++k) {
+      if (broken[i + k] == 0) continue;
+      out.du[i + k] = solvable[k] != 0 ? a[k] * per_spacing : kNaN;
+      out.dv[i + k] = b[k] * per_spacing;
+      out.mean[i + k] = mean[k];
+    }
   }
 }
 
-// Only for the groups in which some box is not whole.
-void masked_slopes(const float* w, std::ptrdiff_t stride, int radius, float step, int count, Slopes& out) {
-  for (int g = 0; g < count; g += kGroup) {
-    if (std::all_of(out.clean + g, out.clean + std::min(g + kGroup, count), [](float clean) { return clean != 0.0F; })) continue;
-    MaskedSums sums;
-    sum_taps(w + g, stride, radius, step, sums);
-    solve_masked(w + g, sums, out.du + g, out.dv + g, out.mean + g, out.clean + g);
-  }
-}
-
-void clear_broken(Slopes& slopes) {
-  for (int i = 0; i < kLanes; ++i)
-    if (slopes.clean[i] == 0.0F) slopes.du[i] = kNaN;
+void clear_broken(const std::uint8_t* broken, int count, const Slopes& slopes) {
+  for (int i = 0; i < count; ++i)
+    if (broken[i] != 0) slopes.du[i] = kNaN;
 }
 
 // With undistorted rays, the slopes over the ray are f times those over the pixel.
 __attribute__((target_clones("arch=x86-64-v3", "default")))
-void normals_of(const Slopes& slopes, const float* x, const float* y, const float* z, int count, float fx, float fy, float* nx, float* ny, float* nz) {
+void normals_of(const Slopes& slopes, int count, float fx, float fy, float right_of_centre, float below_centre, float* __restrict nx, float* __restrict ny,
+                float* __restrict nz) {
+  const float *du = slopes.du, *dv = slopes.dv, *mean = slopes.mean;
   for (int i = 0; i < count; ++i) {
-    const float a = slopes.du[i] * fx, b = slopes.dv[i] * fy;
-    const float c = slopes.mean[i] - (a * x[i] + b * y[i]) / z[i];
+    const float a = du[i] * fx, b = dv[i] * fy;
+    const float c = mean[i] - (du[i] * (right_of_centre + static_cast<float>(i)) + dv[i] * below_centre);
     const float scale = -1.0F / std::sqrt(a * a + b * b + c * c);
     nx[i] = a * scale;
     ny[i] = b * scale;
@@ -199,55 +205,102 @@ void distorted_normal(const DepthPlanes& d, int u, int v, float du, float dv, fl
   n[2] = c * scale;
 }
 
-Tile make_tile(const DepthPlanes& depth, const PixelRect& rect, int radius, float step) {
-  const int pad = radius + 1;
-  Tile tile(rect.width() + 2 * pad, rect.height() + 2 * pad);
-  const int u0 = rect.u0 - pad, v0 = rect.v0 - pad;
-  const int first = std::max(0, u0), last = std::min(depth.width, u0 + tile.width);
-  for (int row = 0; row < tile.height; ++row) {
-    const int v = v0 + row;
-    if (v >= 0 && v < depth.height)
-      invert_row(depth.z + static_cast<std::ptrdiff_t>(v) * depth.width + first, last - first, &tile.inverse[tile.at(row, first - u0)]);
+// The rows of a rectangle, from the top one, with what is around them: rings that hold as many rows as a box is high, and one more.
+class Window {
+ public:
+  Window(const DepthPlanes& depth, const BoxNormalsOptions& options, const PixelRect& rect)
+      : depth_(depth), rect_(rect), radius_(std::clamp(options.radius_px, kMinBoxRadius, kMaxBoxRadius)), step_(options.max_depth_step) {
+    // Sums of |offset| w over a box stay below 2^31.
+    const float weight = static_cast<float>((2 * radius_ + 1) * radius_ * (radius_ + 1)) * kMaxInverse;
+    steps_per_m_ = std::exp2(std::floor(std::log2(2147483648.0F / weight)));
+    pad_ = radius_ + 1;
+    stride_ = rect.width() + 2 * pad_ + kSpare;
+    const auto ring = static_cast<std::size_t>(rows()) * static_cast<std::size_t>(stride_);
+    for (auto* plane : {&inverse_, &sum_, &moment_}) plane->assign(ring, 0);
+    marked_.assign(ring, 1);
+    broken_.assign(static_cast<std::size_t>(stride_), 1);
+    for (auto* row : {&total_, &across_, &down_}) row->assign(static_cast<std::size_t>(stride_), 0);
+    for (auto* row : {&du_, &dv_, &mean_}) row->assign(static_cast<std::size_t>(stride_), 0.0F);
+    for (int v = rect.v0 - pad_; v < rect.v0 + radius_; ++v) take(v);
   }
-  for (int row = 0; row + 1 < tile.height; ++row)
-    break_row(&tile.inverse[tile.at(row, 0)], &tile.inverse[tile.at(row + 1, 0)], tile.width, step, &tile.broken[tile.at(row, 0)]);
-  for (int row = 0; row < tile.height; ++row)
-    row_moments(&tile.inverse[tile.at(row, pad)], &tile.broken[tile.at(row, pad)], rect.width(), radius,
-                &tile.row_sum[tile.at(row, pad)], &tile.row_moment[tile.at(row, pad)], &tile.row_broken[tile.at(row, pad)]);
-  return tile;
-}
+
+  Slopes slopes() { return {du_.data(), dv_.data(), mean_.data()}; }
+
+  /// Slopes of row v; v goes up by one from call to call, from the rectangle's first.
+  void look_at(int v, bool whole_boxes_only) {
+    take(v + radius_);
+    const int width = rect_.width(), side = 2 * radius_ + 1;
+    const float second = static_cast<float>(side * radius_ * (radius_ + 1) * side) / 3.0F;  // sum of offset^2 over the box
+    whole_slopes(sums(), width, 1.0F / second, 1.0F / static_cast<float>(side * side), slopes());
+    std::fill(broken_.begin(), broken_.end(), std::uint8_t{0});
+    for (int row = v - radius_; row <= v + radius_; ++row) mark_row(&marked_[at(row)], width, broken_.data());
+    if (whole_boxes_only) return clear_broken(broken_.data(), width, slopes());
+    TapRows taps{{}, radius_ / kTaps};
+    for (int k = -kTaps; k <= kTaps; ++k) taps.row[k + kTaps] = &inverse_[at(v + k * taps.spacing)] + pad_;
+    broken_slopes(taps, broken_.data(), width, step_, slopes());
+  }
+
+ private:
+  int rows() const { return 2 * radius_ + 3; }
+  Sums sums() { return {total_.data(), across_.data(), down_.data()}; }
+  std::size_t at(int v) const { return static_cast<std::size_t>((v - rect_.v0 + 2 * rows()) % rows()) * static_cast<std::size_t>(stride_); }
+
+  void invert(int v) {
+    std::int32_t* const row = &inverse_[at(v)];
+    std::fill(row, row + stride_, 0);
+    if (v < 0 || v >= depth_.height) return;
+    const int first = std::max(0, rect_.u0 - pad_), last = std::min(depth_.width, rect_.u1 + pad_);
+    invert_row(depth_.z + static_cast<std::ptrdiff_t>(v) * depth_.width + first, last - first, steps_per_m_, row + first - (rect_.u0 - pad_));
+  }
+
+  /// Row v comes into the sums, row v - 2r - 1 leaves them; row v + 1 is read, since a step down to it breaks row v.
+  void take(int v) {
+    invert(v + 1);
+    if (v == rect_.v0 - pad_) return;
+    const int width = rect_.width();
+    const std::size_t in = at(v), out = at(v - 2 * radius_ - 1);
+    row_moments(&inverse_[in] + pad_, width, radius_, &sum_[in], &moment_[in]);
+    slide(sums(), {&sum_[in], &moment_[in]}, {&sum_[out], &moment_[out]}, width, radius_);
+    break_row(&inverse_[in], &inverse_[at(v + 1)], stride_ - kSpare, step_, broken_.data());
+    std::uint8_t* const marked = &marked_[in];
+    std::fill(marked, marked + stride_, std::uint8_t{0});
+    for (int k = 0; k <= 2 * radius_; ++k) mark_row(broken_.data() + 1 + k, width, marked);
+  }
+
+  const DepthPlanes& depth_;
+  PixelRect rect_;
+  int radius_, pad_, stride_;
+  float step_, steps_per_m_;
+  std::vector<std::int32_t> inverse_, sum_, moment_;  ///< Rings: 1/z from pad_ left of the rectangle on; moments from its left edge on.
+  std::vector<std::uint8_t> marked_;                  ///< Ring: whether a pixel of the row within the radius is broken.
+  std::vector<std::uint8_t> broken_;
+  std::vector<std::int32_t> total_, across_, down_;
+  std::vector<float> du_, dv_, mean_;
+};
 
 }  // namespace
 
 void box_normals(const DepthPlanes& depth, const BoxNormalsOptions& options, const PixelRect& wanted, float* nx, float* ny, float* nz) {
   const PixelRect rect{std::max(0, wanted.u0), std::max(0, wanted.v0), std::min(depth.width, wanted.u1), std::min(depth.height, wanted.v1)};
   if (rect.width() <= 0 || rect.height() <= 0) return;
-  const int radius = std::clamp(options.radius_px, 1, kMaxBoxRadius), pad = radius + 1;
-  const Tile tile = make_tile(depth, rect, radius, options.max_depth_step);
-  for (int v = rect.v0; v < rect.v1; ++v)
-    for (int u = rect.u0; u < rect.u1; u += kLanes) {
-      const int count = std::min(kLanes, rect.u1 - u);
-      const auto t = tile.at(v - rect.v0 + pad, u - rect.u0 + pad);
-      const auto i = static_cast<std::size_t>(v) * static_cast<std::size_t>(depth.width) + static_cast<std::size_t>(u);
-      Slopes slopes;
-      clean_slopes(&tile.row_sum[t], &tile.row_moment[t], &tile.row_broken[t], tile.stride, radius, slopes);
-      if (options.whole_boxes_only)
-        clear_broken(slopes);
-      else
-        masked_slopes(&tile.inverse[t], tile.stride, radius, options.max_depth_step, count, slopes);
-      if (depth.undistorted) {
-        normals_of(slopes, depth.x + i, depth.y + i, depth.z + i, count, static_cast<float>(depth.fx), static_cast<float>(depth.fy), nx + i, ny + i, nz + i);
-        continue;
-      }
-      for (int k = 0; k < count; ++k) {
-        const auto pixel = i + static_cast<std::size_t>(k);
-        float normal[3];
-        distorted_normal(depth, u + k, v, slopes.du[k], slopes.dv[k], slopes.mean[k], normal);
-        nx[pixel] = normal[0];
-        ny[pixel] = normal[1];
-        nz[pixel] = normal[2];
-      }
+  Window window(depth, options, rect);
+  const Slopes slopes = window.slopes();
+  for (int v = rect.v0; v < rect.v1; ++v) {
+    window.look_at(v, options.whole_boxes_only);
+    const auto i = static_cast<std::ptrdiff_t>(v) * depth.width + rect.u0;
+    if (depth.undistorted) {
+      normals_of(slopes, rect.width(), static_cast<float>(depth.fx), static_cast<float>(depth.fy), static_cast<float>(rect.u0 - depth.cx),
+                 static_cast<float>(v - depth.cy), nx + i, ny + i, nz + i);
+      continue;
     }
+    for (int k = 0; k < rect.width(); ++k) {
+      float normal[3];
+      distorted_normal(depth, rect.u0 + k, v, slopes.du[k], slopes.dv[k], slopes.mean[k], normal);
+      nx[i + k] = normal[0];
+      ny[i + k] = normal[1];
+      nz[i + k] = normal[2];
+    }
+  }
 }
 
 }  // namespace gfp

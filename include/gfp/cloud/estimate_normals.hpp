@@ -13,7 +13,7 @@ struct EstimateNormalsOptions {
 
 template <class Visitor>
 void visit_fields(EstimateNormalsOptions& o, Visitor&& field) {
-  field("radius_px", o.radius_px, 1, 20);
+  field("radius_px", o.radius_px, 2, 20);
   field("max_depth_step", o.max_depth_step, 0.001, 0.2);
 }
 
