@@ -1,5 +1,7 @@
 #include "segmentation/assemble.hpp"
 
+#include <oneapi/tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -26,8 +28,10 @@ class Assembler {
   }
 
   void shape(const std::vector<std::uint8_t>& valid, const std::vector<const FlatSurface*>& supports) {
-    for (std::size_t p = 0; p < root_.size(); ++p)
-      shapes_.push_back(piece_shape(cloud_, map_, valid, static_cast<int>(p), supports[p], options_.cluster_tolerance_m));
+    shapes_.resize(root_.size());
+    oneapi::tbb::parallel_for(std::size_t{0}, root_.size(), [&](std::size_t p) {
+      shapes_[p] = piece_shape(cloud_, map_, valid, static_cast<int>(p), supports[p], options_.cluster_tolerance_m);
+    });
   }
 
   std::vector<int> run() {

@@ -1,5 +1,7 @@
 #include "segmentation/cell_grid.hpp"
 
+#include <oneapi/tbb/parallel_for.h>
+
 #include <algorithm>
 
 namespace gfp {
@@ -30,7 +32,7 @@ SampleGrid sample_grid(const OrganizedCloud& cloud) {
   grid.height = (cloud.height - grid.stride / 2 + grid.stride - 1) / grid.stride;
   const auto count = static_cast<std::size_t>(grid.width) * static_cast<std::size_t>(grid.height);
   for (auto* plane : {&grid.ray_x, &grid.ray_y, &grid.inverse_depth}) plane->assign(count, 0.0F);
-  for (int j = 0; j < grid.height; ++j)
+  oneapi::tbb::parallel_for(0, grid.height, [&](int j) {
     for (int i = 0; i < grid.width; ++i) {
       const auto at = static_cast<std::size_t>(j * grid.stride + grid.stride / 2) * static_cast<std::size_t>(cloud.width) +
                       static_cast<std::size_t>(i * grid.stride + grid.stride / 2);
@@ -41,14 +43,16 @@ SampleGrid sample_grid(const OrganizedCloud& cloud) {
       grid.ray_y[s] = cloud.y[at] * inverse;
       grid.inverse_depth[s] = inverse;
     }
+  });
   return grid;
 }
 
 CellGrid fit_cells(const SampleGrid& grid) {
   CellGrid cells{grid.width / kCellSamples, grid.height / kCellSamples, {}};
-  cells.cells.reserve(static_cast<std::size_t>(cells.columns) * static_cast<std::size_t>(cells.rows));
-  for (int r = 0; r < cells.rows; ++r)
-    for (int c = 0; c < cells.columns; ++c) cells.cells.push_back(fit_cell(grid, c * kCellSamples, r * kCellSamples));
+  cells.cells.resize(static_cast<std::size_t>(cells.columns) * static_cast<std::size_t>(cells.rows));
+  oneapi::tbb::parallel_for(0, cells.rows, [&](int r) {
+    for (int c = 0; c < cells.columns; ++c) cells.cells[static_cast<std::size_t>(r * cells.columns + c)] = fit_cell(grid, c * kCellSamples, r * kCellSamples);
+  });
   return cells;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <memory>
 
 #include "gfp/core/union_find.hpp"
 
@@ -18,7 +19,7 @@ class Joiner {
   Joiner(const DepthGrid& depth, const std::vector<std::uint8_t>& classes, const std::vector<std::uint8_t>& valid, const ComponentOptions& options)
       : z_(depth.z), classes_(classes.data()), valid_(valid.data()), width_(depth.width), height_(depth.height),
         tolerance_(static_cast<float>(options.tolerance_m)), gap_(static_cast<float>(options.bridged_gap_m * depth.focal_px)),
-        run_of_(classes.size(), -1) {}
+        run_of_(std::make_unique_for_overwrite<std::int32_t[]>(classes.size())) {}
 
   std::vector<PixelList> run(int min_pixels) {
     find_runs();
@@ -82,8 +83,9 @@ class Joiner {
         do b += width_; while (b < limit && valid_[b] == 0);
         if (b >= limit) continue;
       }
+      if (classes_[b] == 0) continue;
       const std::int32_t below = run_of_[static_cast<std::size_t>(b)];
-      if (below < 0 || below == joined_run || !joined(a, b)) continue;
+      if (below == joined_run || !joined(a, b)) continue;
       sets_.join(r, below);
       joined_run = below;
     }
@@ -111,7 +113,7 @@ class Joiner {
   const std::uint8_t *classes_, *valid_;
   std::int32_t width_, height_;
   float tolerance_, gap_;
-  std::vector<std::int32_t> run_of_;
+  std::unique_ptr<std::int32_t[]> run_of_;  ///< Of the pixels that have a class.
   std::vector<Run> runs_;
   UnionFind sets_;
 };

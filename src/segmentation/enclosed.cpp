@@ -65,29 +65,32 @@ struct Heights {
 void take_enclosed(const OrganizedCloud& cloud, const std::vector<std::uint8_t>& classes, const FlatSurface& support, PixelList& pixels) {
   Box box = open_pixels(cloud, classes, pixels);
   const auto in_image = [&](int i) { return (box.v0 + i / box.width) * cloud.width + box.u0 + i % box.width; };
-  Heights around;
-  const auto flood_from = [&](int border) {
-    if (box.open[static_cast<std::size_t>(border)] == 0) return;
-    for (const int i : flood(box, border)) around.add(cloud, support, in_image(i));
+  std::vector<std::vector<int>> outer, enclosed;
+  const auto flood_from = [&](int seed, auto& regions) {
+    if (box.open[static_cast<std::size_t>(seed)] != 0) regions.push_back(flood(box, seed));
   };
   const int last_row = (box.height - 1) * box.width;
   for (int u = 0; u < box.width; ++u)
-    for (const int border : {u, last_row + u}) flood_from(border);
+    for (const int border : {u, last_row + u}) flood_from(border, outer);
   for (int v = 0; v < box.height; ++v)
-    for (const int border : {v * box.width, v * box.width + box.width - 1}) flood_from(border);
+    for (const int border : {v * box.width, v * box.width + box.width - 1}) flood_from(border, outer);
+  for (int i = 0; i < static_cast<int>(box.open.size()); ++i) flood_from(i, enclosed);
+  std::erase_if(enclosed, [](const auto& region) { return region.size() < kMinPixels; });
+  if (enclosed.empty()) return;
+
+  const auto add_all = [&](const std::vector<int>& region, Heights& heights) {
+    for (const int i : region) heights.add(cloud, support, in_image(i));
+  };
+  Heights around;
+  for (const auto& region : outer) add_all(region, around);
   const std::size_t before = pixels.size();
-  for (int i = 0; i < static_cast<int>(box.open.size()); ++i) {
-    if (box.open[static_cast<std::size_t>(i)] == 0) continue;
-    std::vector<int> region = flood(box, i);
-    if (region.size() < kMinPixels) continue;
+  for (const auto& region : enclosed) {
     Heights heights;
-    for (int& r : region) {
-      r = in_image(r);
-      heights.add(cloud, support, r);
-    }
+    add_all(region, heights);
     // The flat middle of a plate may have been taken for a warp of the table.
     const bool rises = around.pixels >= kMinPixels && heights.mean_plain() - around.mean_plain() > kMinRise;
-    if (rises || heights.mean_warped() > kMinMeanHeight) pixels.insert(pixels.end(), region.begin(), region.end());
+    if (!rises && !(heights.mean_warped() > kMinMeanHeight)) continue;
+    for (const int i : region) pixels.push_back(in_image(i));
   }
   if (pixels.size() != before) std::sort(pixels.begin(), pixels.end());
 }

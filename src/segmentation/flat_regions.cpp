@@ -83,8 +83,9 @@ std::vector<FlatRegion> flat_regions(const CellGrid& grid) {
   std::vector<int> seeds;
   for (int c = 0; c < static_cast<int>(grid.cells.size()); ++c)
     if (grid[c].flat) seeds.push_back(c);
-  const auto roughness = [&](int c) { return grid[c].fit.rms_inverse_m / flatness_tolerance(grid[c].mean_inverse()); };
-  std::stable_sort(seeds.begin(), seeds.end(), [&](int a, int b) { return roughness(a) < roughness(b); });
+  std::vector<double> roughness(grid.cells.size());
+  for (const int c : seeds) roughness[static_cast<std::size_t>(c)] = grid[c].fit.rms_inverse_m / flatness_tolerance(grid[c].mean_inverse());
+  std::stable_sort(seeds.begin(), seeds.end(), [&](int a, int b) { return roughness[static_cast<std::size_t>(a)] < roughness[static_cast<std::size_t>(b)]; });
   std::vector<std::int32_t> owner(grid.cells.size(), -1);
   std::vector<FlatRegion> regions;
   for (const int seed : seeds) {

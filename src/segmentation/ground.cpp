@@ -54,9 +54,8 @@ void fill(Ground& ground, std::vector<std::uint8_t> known) {
 }  // namespace
 
 float Ground::at(int u, int v) const {
-  const auto cell = [&](int pixel, int cells) {
-    return std::clamp((static_cast<float>(pixel) + 0.5F) / static_cast<float>(cell_px) - 0.5F, 0.0F, static_cast<float>(cells - 1));
-  };
+  const float per_pixel = 1.0F / static_cast<float>(cell_px);
+  const auto cell = [&](int pixel, int cells) { return std::clamp((static_cast<float>(pixel) + 0.5F) * per_pixel - 0.5F, 0.0F, static_cast<float>(cells - 1)); };
   const float x = cell(u, columns), y = cell(v, rows);
   const int c0 = static_cast<int>(x), r0 = static_cast<int>(y), c1 = std::min(c0 + 1, columns - 1), r1 = std::min(r0 + 1, rows - 1);
   const auto value = [&](int c, int r) { return offset_m[static_cast<std::size_t>(r * columns + c)]; };

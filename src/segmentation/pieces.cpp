@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "gfp/core/box_normals.hpp"
@@ -142,8 +141,8 @@ class Cutter {
 void estimate_normals(const OrganizedCloud& cloud, const std::vector<PixelRect>& boxes, PieceMap& map) {
   const DepthPlanes depth{cloud.width, cloud.height, cloud.x.data(), cloud.y.data(), cloud.z.data(),
                           cloud.camera.fx, cloud.camera.fy, cloud.camera.cx, cloud.camera.cy, cloud.camera.distortion == DistortionModel::kNone};
-  for (auto* plane : {&map.nx, &map.ny, &map.nz}) plane->assign(cloud.size(), std::numeric_limits<float>::quiet_NaN());
-  for (const PixelRect& box : boxes) box_normals(depth, {kNormalRadius, 0.02F, true}, box, map.nx.data(), map.ny.data(), map.nz.data());
+  for (auto* plane : {&map.nx, &map.ny, &map.nz}) *plane = std::make_unique_for_overwrite<float[]>(cloud.size());
+  for (const PixelRect& box : boxes) box_normals(depth, {kNormalRadius, 0.02F, true}, box, map.nx.get(), map.ny.get(), map.nz.get());
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "gfp/cloud/organized_cloud.hpp"
@@ -8,9 +9,9 @@
 
 namespace gfp {
 
-/// Per-pixel normals inside the clusters (NaN elsewhere) and the piece of every pixel.
+/// Per-pixel normals inside the clusters (whatever memory holds elsewhere: do not look) and the piece of every pixel.
 struct PieceMap {
-  std::vector<float> nx, ny, nz;
+  std::unique_ptr<float[]> nx, ny, nz;
   std::vector<std::int32_t> piece;  ///< -1: none.
   std::vector<PixelList> pixels;    ///< Of each piece, ascending.
   std::vector<int> cluster;         ///< Which cluster each piece is part of.

@@ -1,5 +1,7 @@
 #include "segmentation/reach_down.hpp"
 
+#include <algorithm>
+
 #include "segmentation/pixel_classes.hpp"
 
 namespace gfp {
@@ -31,8 +33,8 @@ class FootSearch {
     for (int v = 0; v < cloud_.height; ++v) {
       const std::uint8_t* row = &at(v * cloud_.width);
       mark_feet(row, v > 0 ? row - cloud_.width : row, v + 1 < cloud_.height ? row + cloud_.width : row, cloud_.width, feet.data());
-      for (int u = 0; u < cloud_.width; ++u)
-        if (feet[static_cast<std::size_t>(u)] && row[u] >= kAbove) visit_neighbours(u, v, ring);
+      for (auto foot = std::find(feet.begin(), feet.end(), 1); foot != feet.end(); foot = std::find(foot + 1, feet.end(), 1))
+        if (const auto u = static_cast<int>(foot - feet.begin()); row[u] >= kAbove) visit_neighbours(u, v, ring);
     }
     for (int step = 0; step < kReach && !ring.empty(); ++step) {
       std::vector<std::int32_t> joined, next;

@@ -85,8 +85,13 @@ std::vector<int> support_order(const Supports& supports, const std::vector<Candi
 void label_pixels(const std::vector<std::uint8_t>& classes, const std::vector<int>& rank, const std::vector<Candidate>& taken, Image<std::int32_t>& labels) {
   std::array<std::int32_t, 256> label_of;
   label_of.fill(Segments::kUnassigned);
+  labels.pixels.reserve(classes.size());
   for (std::size_t k = 0; k < rank.size(); ++k) label_of[kOnSupport + k] = Segments::kPlaneLabel - rank[k];
-  std::transform(classes.begin(), classes.end(), labels.pixels.begin(), [&](std::uint8_t c) { return label_of[c]; });
+  for (auto run = classes.begin(); run != classes.end();) {  // by runs of one class: they are long
+    const auto end = std::find_if(run + 1, classes.end(), [c = *run](std::uint8_t other) { return other != c; });
+    labels.pixels.insert(labels.pixels.end(), static_cast<std::size_t>(end - run), label_of[*run]);
+    run = end;
+  }
   for (std::size_t k = 0; k < taken.size(); ++k)
     for (const auto i : taken[k].pixels) labels.pixels[static_cast<std::size_t>(i)] = static_cast<std::int32_t>(k);
 }
@@ -101,6 +106,7 @@ PixelList masked_pixels(const std::vector<std::uint8_t>& valid, const Image<std:
 
 // The support that the pixels stand on: the highest one that is below (almost) all of them, and under most of them.
 int support_of(const OrganizedCloud& cloud, const Supports& supports, const PixelList& pixels) {
+  if (supports.surfaces.size() == 1) return 0;
   int best = -1;
   double best_base = std::numeric_limits<double>::infinity();
   const std::size_t step = std::max<std::size_t>(1, pixels.size() / 500);
@@ -178,7 +184,8 @@ Segments segment_cloud(const OrganizedCloud& cloud, const SegmentationOptions& o
   Segments result;
   result.width = cloud.width;
   result.height = cloud.height;
-  result.labels = Image<std::int32_t>(cloud.width, cloud.height, Segments::kUnassigned);
+  result.labels.width = cloud.width;
+  result.labels.height = cloud.height;
   if (cloud.size() == 0) return result;
 
   const Supports supports = find_supports(cloud, options, up_camera, last);

@@ -1,5 +1,7 @@
 #include "segmentation/supports.hpp"
 
+#include <oneapi/tbb/parallel_for.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -177,14 +179,13 @@ Supports find_supports(const OrganizedCloud& cloud, const SegmentationOptions& o
                        const std::optional<Eigen::Vector3d>& up_camera, const SupportPlane* last) {
   const SampleGrid grid = sample_grid(cloud);
   const CellGrid cells = fit_cells(grid);
-  std::vector<Surface> surfaces;
   std::vector<FlatRegion> regions = flat_regions(cells);
   if (last != nullptr) add_known(cells, *last, regions);
-  for (const FlatRegion& region : join_surfaces(cells, std::move(regions))) {
-    if (static_cast<int>(region.cells.size()) < kMinSupportCells) break;
-    surfaces.push_back(describe(grid, cells, region));
-    if (surfaces.back().plane.polygon.size() < 3) surfaces.pop_back();
-  }
+  regions = join_surfaces(cells, std::move(regions));
+  std::erase_if(regions, [](const FlatRegion& region) { return static_cast<int>(region.cells.size()) < kMinSupportCells; });
+  std::vector<Surface> surfaces(regions.size());
+  oneapi::tbb::parallel_for(std::size_t{0}, regions.size(), [&](std::size_t k) { surfaces[k] = describe(grid, cells, regions[k]); });
+  std::erase_if(surfaces, [](const Surface& surface) { return surface.plane.polygon.size() < 3; });
 
   const Surface* main = nullptr;
   for (Surface& surface : surfaces) {
