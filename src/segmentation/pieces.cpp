@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "gfp/core/box_normals.hpp"
@@ -26,6 +27,20 @@ struct Cut {
   bool left_over = false;  // connected only by steps that end a surface
 };
 
+/// Where a row of depths (NaN: not of the cluster) has a step to the right or down: more than the surface's own slope explains, by the
+/// second difference across the pixel. The rows above and below are `stride` before and behind.
+__attribute__((target_clones("arch=x86-64-v3", "default")))
+void mark_steps(const float* z, std::int32_t stride, float tolerance, std::uint8_t* __restrict step) {
+  const auto is_step = [&](std::int32_t c, std::int32_t d, float limit) __attribute__((always_inline)) {
+    const float rise = z[c + d] - z[c];
+    return (std::abs(rise) > limit) & !(std::abs(rise - (z[c] - z[c - d])) <= limit);
+  };
+  for (std::int32_t c = 1; c + 1 < stride; ++c) {
+    const float square = z[c] * z[c], limit = tolerance * (square > 1.0F ? square : 1.0F);
+    step[c] = static_cast<std::uint8_t>(is_step(c, 1, limit) | is_step(c, stride, limit));
+  }
+}
+
 /// Cuts one cluster, on a grid of its own with a margin all around: no neighbour is ever outside, and all of it stays in the cache.
 class Cutter {
  public:
@@ -33,13 +48,14 @@ class Cutter {
       : cloud_(cloud), map_(normals), tolerance_(static_cast<float>(tolerance_m)), stride_(box.width() + 2 * kMargin), height_(box.height() + 2 * kMargin) {
     const auto cells = static_cast<std::size_t>(stride_) * static_cast<std::size_t>(height_);
     inside_.assign(cells, 0);
-    z_.assign(cells, 0);
-    cells_.reserve(cluster.size());
+    z_.assign(cells, std::numeric_limits<float>::quiet_NaN());
+    cells_.resize(cluster.size());
     int v = box.v0, row = box.v0 * cloud.width;
-    for (const std::int32_t i : cluster) {
+    for (std::size_t k = 0; k < cluster.size(); ++k) {
+      const std::int32_t i = cluster[k];
       for (; i >= row + cloud.width; row += cloud.width) ++v;
       const std::int32_t c = (v - box.v0 + kMargin) * stride_ + (i - row) - box.u0 + kMargin;
-      cells_.push_back({c, i, ((i - row) & 1) != 0, (v & 1) != 0});
+      cells_[k] = {c, i, ((i - row) & 1) != 0, (v & 1) != 0};
       inside_[index(c)] = 1;
       z_[index(c)] = cloud.z[index(i)];
     }
@@ -48,7 +64,9 @@ class Cutter {
   std::vector<Cut> run() {
     std::vector<std::uint8_t> open(inside_.size(), 0);
     crease_.assign(inside_.size(), 0);
-    for (const Cell& cell : cells_) open[index(cell.c)] = !is_step(cell.c) && !near_crease(cell);
+    std::vector<std::uint8_t> step(inside_.size(), 0);
+    for (int row = kMargin; row < height_ - kMargin; ++row) mark_steps(&z_[index(row * stride_)], stride_, kStepShare * tolerance_, &step[index(row * stride_)]);
+    for (const Cell& cell : cells_) open[index(cell.c)] = step[index(cell.c)] == 0 && !near_crease(cell);
     piece_.assign(inside_.size(), -1);
     const DepthGrid depth{z_.data(), stride_, height_, 0};
     for (const PixelList& component : connected_components(depth, open, open, {kStepShare * tolerance_, 0.0}, kMinPiece)) add(component, false);
@@ -68,17 +86,6 @@ class Cutter {
   bool inside(std::int32_t c) const { return inside_[index(c)] != 0; }
   float z(std::int32_t c) const { return z_[index(c)]; }
   float step_limit(std::int32_t c) const { return kStepShare * tolerance_ * std::max(1.0F, z(c) * z(c)); }
-
-  // A step is more than the surface's own slope explains: the depth's second difference across the pixel.
-  bool is_step(std::int32_t c) const {
-    const float limit = step_limit(c);
-    for (const std::int32_t d : {1, stride_}) {
-      const float rise = z(c + d) - z(c);
-      if (!inside(c + d) || std::abs(rise) <= limit) continue;
-      if (!inside(c - d) || std::abs(rise - (z(c) - z(c - d))) > limit) return true;
-    }
-    return false;
-  }
 
   // Creases are bands as wide as the span: every second pixel of every second row tells for its neighbours (which come later).
   bool near_crease(const Cell& cell) {
@@ -111,8 +118,12 @@ class Cutter {
   // Breadth first from all pieces at once, so that a cut is shared out evenly; never across a step of depth.
   void grow_back() {
     std::vector<std::int32_t> frontier, next;
-    for (const Cell& cell : cells_)
-      if (piece_[index(cell.c)] >= 0) frontier.push_back(cell.c);
+    for (const Cell& cell : cells_)  // those of the pieces that have somewhere to grow to
+      if (piece_[index(cell.c)] < 0)
+        for (const std::int32_t n : {cell.c + 1, cell.c - 1, cell.c + stride_, cell.c - stride_})
+          if (piece_[index(n)] >= 0) frontier.push_back(n);
+    std::sort(frontier.begin(), frontier.end());
+    frontier.erase(std::unique(frontier.begin(), frontier.end()), frontier.end());
     while (!frontier.empty()) {
       next.clear();
       for (const std::int32_t c : frontier) {

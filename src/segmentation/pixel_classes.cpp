@@ -1,5 +1,6 @@
 #include "segmentation/pixel_classes.hpp"
 
+#include <oneapi/tbb/blocked_range.h>
 #include <oneapi/tbb/parallel_for.h>
 
 #include <algorithm>
@@ -16,7 +17,7 @@ struct Kernel {
   std::vector<float> edges;  // x y z offset of each, the margin included
 };
 
-constexpr int kBlock = 32;
+constexpr int kBlock = 64;
 constexpr int kOnly = 1;             // near_plane() found pixels on the plane and none above
 constexpr float kMinDepth = 0.05F;  // metres: no sensor of ours reads nearer
 
@@ -130,7 +131,9 @@ Kernel kernel_of(const FlatSurface& surface, double max_height_m, double margin_
 
 std::vector<std::uint8_t> classify_pixels(const OrganizedCloud& cloud, const Supports& supports, const SegmentationOptions& options) {
   std::vector<std::uint8_t> classes(cloud.size());
-  mark_valid(cloud.z.data(), static_cast<int>(cloud.size()), kMinDepth, static_cast<float>(options.max_depth_m), classes.data());
+  oneapi::tbb::parallel_for(oneapi::tbb::blocked_range<std::size_t>(0, cloud.size(), std::size_t{1} << 15), [&](const auto& range) {
+    mark_valid(&cloud.z[range.begin()], static_cast<int>(range.size()), kMinDepth, static_cast<float>(options.max_depth_m), &classes[range.begin()]);
+  });
   for (const FlatSurface& wall : supports.walls) apply(cloud, wall, kernel_of(wall, 0.0, options.edge_margin_m, kWall, 0), classes);
   std::vector<std::size_t> order(supports.surfaces.size());
   std::iota(order.begin(), order.end(), std::size_t{0});

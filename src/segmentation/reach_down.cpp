@@ -1,5 +1,8 @@
 #include "segmentation/reach_down.hpp"
 
+#include <oneapi/tbb/blocked_range.h>
+#include <oneapi/tbb/parallel_for.h>
+
 #include <algorithm>
 
 #include "segmentation/pixel_classes.hpp"
@@ -37,9 +40,14 @@ class FootSearch {
         if (const auto u = static_cast<int>(foot - feet.begin()); row[u] >= kAbove) visit_neighbours(u, v, ring);
     }
     for (int step = 0; step < kReach && !ring.empty(); ++step) {
+      std::vector<std::uint8_t> out(ring.size());
+      constexpr std::size_t kChunk = 256;
+      oneapi::tbb::parallel_for(oneapi::tbb::blocked_range<std::size_t>(0, ring.size(), kChunk), [&](const auto& range) {
+        for (std::size_t k = range.begin(); k < range.end(); ++k) out[k] = stands_out(ring[k]);
+      });
       std::vector<std::int32_t> joined, next;
-      for (const std::int32_t pixel : ring)
-        if (stands_out(pixel)) joined.push_back(pixel);
+      for (std::size_t k = 0; k < ring.size(); ++k)
+        if (out[k] != 0) joined.push_back(ring[k]);
       for (const std::int32_t pixel : joined) at(pixel) = static_cast<std::uint8_t>(at(pixel) - kOnSupport + kAbove);
       for (const std::int32_t pixel : joined) visit_neighbours(pixel % cloud_.width, pixel / cloud_.width, next);
       ring = std::move(next);
@@ -64,8 +72,8 @@ class FootSearch {
   }
 
   /// Over readings on the same support only: those above it would lift the mean of the plain table beside them.
-  bool stands_out(std::int32_t pixel) {
-    const std::uint8_t on = at(pixel);
+  bool stands_out(std::int32_t pixel) const {
+    const std::uint8_t on = classes_[static_cast<std::size_t>(pixel)];
     const FlatSurface& surface = supports_.surfaces[static_cast<std::size_t>(on - kOnSupport)];
     const int u = pixel % cloud_.width, v = pixel / cloud_.width;
     const Eigen::Vector3f up = surface.up.cast<float>();
@@ -75,7 +83,7 @@ class FootSearch {
     for (int y = std::max(0, v - kHalfWindow); y <= std::min(cloud_.height - 1, v + kHalfWindow); ++y) {
       for (int x = std::max(0, u - kHalfWindow); x <= std::min(cloud_.width - 1, u + kHalfWindow); ++x) {
         const std::int32_t other = y * cloud_.width + x;
-        if (at(other) != on) continue;
+        if (classes_[static_cast<std::size_t>(other)] != on) continue;
         sum += up.dot(cloud_.point(static_cast<std::size_t>(other))) + offset;
         ++count;
       }

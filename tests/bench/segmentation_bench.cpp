@@ -1,9 +1,14 @@
 // Support plane and clusters: ours and PCL's three usual ways, with how well each covers the labelled objects.
 #include <benchmark/benchmark.h>
 
+#include <algorithm>
+
 #include "bench/bench_scenes.hpp"
 #include "bench/peers_pcl.hpp"
 #include "gfp/segmentation/segment_cloud.hpp"
+#include "segmentation/components.hpp"
+#include "segmentation/pixel_classes.hpp"
+#include "segmentation/supports.hpp"
 
 namespace gfp::bench {
 namespace {
@@ -40,6 +45,35 @@ void BM_SegmentsOurs(benchmark::State& state) {
   state.counters["coverage"] = mean_coverage(state, [&](const BenchScene& scene) { return segment_cloud(scene.cloud, {}, std::nullopt, &last[at++]).labels; });
 }
 
+/// No more than what the peers do, on the same steps: planes, the pixels above them, and what is connected there.
+Image<std::int32_t> plane_and_clusters(const OrganizedCloud& cloud, const SupportPlane& last) {
+  const SegmentationOptions options;
+  const Supports supports = find_supports(cloud, options, std::nullopt, &last);
+  auto classes = classify_pixels(cloud, supports, options);
+  std::vector<std::uint8_t> free(classes.size());
+  std::transform(classes.begin(), classes.end(), free.begin(), [](std::uint8_t c) { return static_cast<std::uint8_t>(c >= kAbove); });
+  Image<std::int32_t> labels(cloud.width, cloud.height, -1);
+  std::int32_t label = 0;
+  for (const PixelList& cluster :
+       connected_components(depth_grid(cloud), free, classes, {options.cluster_tolerance_m, options.cluster_tolerance_m}, options.min_points)) {
+    for (const std::int32_t i : cluster) labels.pixels[static_cast<std::size_t>(i)] = label;
+    ++label;
+  }
+  return labels;
+}
+
+void BM_SegmentsOursPlaneAndClusters(benchmark::State& state) {
+  std::vector<SupportPlane> last;
+  for (const auto& scene : scenes(state)) last.push_back(segment_cloud(scene.cloud).planes.at(0));
+  Turn turn(state);
+  for (auto _ : state) {
+    const SupportPlane& plane = last[turn.index()];
+    benchmark::DoNotOptimize(plane_and_clusters(turn.next().cloud, plane).pixels.size());
+  }
+  std::size_t at = 0;
+  state.counters["coverage"] = mean_coverage(state, [&](const BenchScene& scene) { return plane_and_clusters(scene.cloud, last[at++]); });
+}
+
 template <class Run>
 void measure_pcl(benchmark::State& state, Run&& run) {
   Turn turn(state);
@@ -68,6 +102,7 @@ void BM_SegmentsPcl(benchmark::State& state) {
 
 #define GFP_EACH_SOURCE ->Apply(each_source)->ArgName("real")->Unit(benchmark::kMillisecond)
 BENCHMARK(BM_SegmentsOurs) GFP_EACH_SOURCE;
+BENCHMARK(BM_SegmentsOursPlaneAndClusters) GFP_EACH_SOURCE;
 BENCHMARK(BM_SegmentsOursFirstFrame) GFP_EACH_SOURCE;
 BENCHMARK(BM_SegmentsPclVoxels10mm) GFP_EACH_SOURCE;
 BENCHMARK(BM_SegmentsPcl<&PclPeer::organised_clusters>)->Name("BM_SegmentsPclOrganised") GFP_EACH_SOURCE;
