@@ -1,15 +1,11 @@
 #include "cli/listen.hpp"
 
-#include <csignal>
 #include <iostream>
 #include <utility>
 
+#include "cli/interrupt.hpp"
+
 namespace gfp {
-namespace {
-
-volatile std::sig_atomic_t interrupted = 0;
-
-}  // namespace
 
 void add_listen_options(CLI::App& command, ListenArguments& arguments) {
   command.add_option("TOPIC", arguments.topic, "Topic or prefix of topics, as in /gfp/scene/")->required();
@@ -41,13 +37,11 @@ bool read_listen_keys(ListenArguments& arguments, ExitStatus& status) {
 }
 
 ListenEnd::ListenEnd(const ListenArguments& arguments) : arguments_(arguments), deadline_(monotonic_now() + Nanoseconds(static_cast<std::int64_t>(1e9 * arguments.seconds))) {
-  struct sigaction action {};
-  action.sa_handler = [](int) { interrupted = 1; };
-  for (const int signal : {SIGINT, SIGTERM}) sigaction(signal, &action, nullptr);
+  catch_interrupts();
 }
 
 bool ListenEnd::reached(std::uint64_t messages) const {
-  if (interrupted != 0) return true;
+  if (interrupted()) return true;
   if (arguments_.count > 0 && messages >= arguments_.count) return true;
   return arguments_.seconds > 0 && monotonic_now() >= deadline_;
 }

@@ -11,6 +11,7 @@
 
 #include "app/builtin_library.hpp"
 #include "cli/commands.hpp"
+#include "cli/primitive_commands.hpp"
 #include "cli/primitive_report.hpp"
 #include "gfp/core/mesh_io.hpp"
 #include "gfp/frame/png.hpp"
@@ -96,6 +97,7 @@ void add_primitive_command(CLI::App& app, ExitStatus& status) {
   export_command.add_option("--size", arguments->size_m, "Reference size x,y,z in metres (default: the typical size)")->delimiter(',')->expected(3)->check(CLI::Range(1e-3, 10.0));
   export_command.add_option("--modes", arguments->modes, "Coefficients in standard deviations, as in 1,0,-2")->delimiter(',')->check(CLI::Range(-5.0, 5.0));
   export_command.callback([arguments, &status] { with_primitive(*arguments, status, export_shape); });
+  add_primitive_build_command(command, status);
   for (CLI::App* subcommand : {&list_command, &show_command, &export_command}) subcommand->add_flag("--json", arguments->json, "Machine-readable output");
 }
 

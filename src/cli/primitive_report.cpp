@@ -16,10 +16,6 @@
 namespace gfp {
 namespace {
 
-std::size_t count_controls(const Primitive& primitive) {
-  return static_cast<std::size_t>(std::count(primitive.topology->types.begin(), primitive.topology->types.end(), PointType::kControl));
-}
-
 std::size_t count_manual(const Primitive& primitive) {
   return static_cast<std::size_t>(std::count_if(primitive.manual_types.begin(), primitive.manual_types.end(), [](const auto& type) { return type.has_value(); }));
 }
@@ -27,21 +23,11 @@ std::size_t count_manual(const Primitive& primitive) {
 /// One standard deviation of each size as a share of it.
 Eigen::Vector3d size_spread(const Primitive& primitive) { return primitive.log_size_covariance.diagonal().cwiseMax(0).cwiseSqrt(); }
 
-std::string symmetry_text(const Symmetry& symmetry) {
-  std::vector<std::string> parts;
-  if (symmetry.revolution) parts.emplace_back("revolution about z");
-  if (!symmetry.revolution && symmetry.cyclic > 1) parts.push_back(fmt::format("{}-fold about z", symmetry.cyclic));
-  if (symmetry.mirror_x) parts.emplace_back("mirror x = 0");
-  if (symmetry.mirror_y) parts.emplace_back("mirror y = 0");
-  if (symmetry.flip_z) parts.emplace_back("upside down");
-  return parts.empty() ? "none" : fmt::format("{}", fmt::join(parts, ", "));
-}
-
 std::string hex(std::uint64_t hash) { return fmt::format("{:016x}", hash); }
 
 // ---- the sheet ----
 
-constexpr int kCell = 300;
+constexpr int kCell = kPrimitivePicture_px;
 constexpr Rgb8 kPaper{18, 18, 24}, kInk{225, 225, 230}, kBody{120, 170, 220}, kControl{255, 210, 60};
 
 /// Looks at a body of `radius_m` around `centre` from 30 degrees above and to the side.
@@ -55,21 +41,56 @@ Transform view_of(const Eigen::Vector3d& centre, double distance_m) {
   return T_object_view.inverse();
 }
 
+/// A cell of a sheet in which a body of `radius_m` around `centre` is seen.
+class BodyPicture {
+ public:
+  BodyPicture(const Eigen::Vector3d& centre, double radius_m)
+      : canvas_(kCell, kCell, kPaper), painter_(canvas_, {kCell, kCell, kFocal_px, kFocal_px, 0.5 * (kCell - 1), 0.5 * (kCell - 1), DistortionModel::kNone, {}}),
+        T_view_object_(view_of(centre, std::max(radius_m / std::sin(kHalfAngle), radius_m + 0.06))) {}
+
+  void body(const TriangleMesh& mesh, Rgb8 color, double alpha = 1.0) { painter_.meshes({{transformed(mesh, T_view_object_), {}, color}}, alpha); }
+  void dot(const Eigen::Vector3d& point, Rgb8 color) { painter_.dot(T_view_object_ * point, 1.2, color, 0.8); }
+  void line(const Eigen::Vector3d& from, const Eigen::Vector3d& to, Rgb8 color) { painter_.line(T_view_object_ * from, T_view_object_ * to, color, 2); }
+  Image<Rgb8> captioned(const std::string& caption) {
+    canvas_.label(0, 0, caption, kInk, 1);
+    return canvas_.image();
+  }
+
+ private:
+  static constexpr double kHalfAngle = 0.3;
+  inline static const double kFocal_px = 0.46 * kCell / std::tan(kHalfAngle);
+  Canvas canvas_;
+  Painter painter_;
+  Transform T_view_object_;
+};
+
+TriangleMesh shape_mesh(const Primitive& primitive, const std::vector<double>& modes) { return {shape(primitive, primitive.typical_size_m(), modes), primitive.topology->triangles}; }
+
 /// One shape in a cell of its own. All cells of a sheet have the same scale, so that sizes compare.
 Image<Rgb8> draw_shape(const Primitive& primitive, const std::vector<double>& modes, double radius_m, const std::string& caption, bool with_controls) {
-  Canvas canvas(kCell, kCell, kPaper);
-  const TriangleMesh mesh{shape(primitive, primitive.typical_size_m(), modes), primitive.topology->triangles};
-  const double half_angle = 0.3, focal_px = 0.46 * kCell / std::tan(half_angle);
-  Painter painter(canvas, {kCell, kCell, focal_px, focal_px, 0.5 * (kCell - 1), 0.5 * (kCell - 1), DistortionModel::kNone, {}});
-  const Transform T_view_object = view_of(bounds(mesh.vertices).centre(), std::max(radius_m / std::sin(half_angle), radius_m + 0.06));
-  painter.meshes({{transformed(mesh, T_view_object), {}, kBody}}, 1.0);
+  const TriangleMesh mesh = shape_mesh(primitive, modes);
+  BodyPicture picture(bounds(mesh.vertices).centre(), radius_m);
+  picture.body(mesh, kBody);
   for (std::size_t i = 0; with_controls && i < mesh.vertices.size(); ++i)
-    if (primitive.topology->types[i] == PointType::kControl) painter.dot(T_view_object * mesh.vertices[i], 1.2, kControl, 0.8);
-  canvas.label(0, 0, caption, kInk, 1);
-  return canvas.image();
+    if (primitive.topology->types[i] == PointType::kControl) picture.dot(mesh.vertices[i], kControl);
+  return picture.captioned(caption);
 }
 
 }  // namespace
+
+std::size_t count_controls(const Primitive& primitive) {
+  return static_cast<std::size_t>(std::count(primitive.topology->types.begin(), primitive.topology->types.end(), PointType::kControl));
+}
+
+std::string symmetry_text(const Symmetry& symmetry) {
+  std::vector<std::string> parts;
+  if (symmetry.revolution) parts.emplace_back("revolution about z");
+  if (!symmetry.revolution && symmetry.cyclic > 1) parts.push_back(fmt::format("{}-fold about z", symmetry.cyclic));
+  if (symmetry.mirror_x) parts.emplace_back("mirror x = 0");
+  if (symmetry.mirror_y) parts.emplace_back("mirror y = 0");
+  if (symmetry.flip_z) parts.emplace_back("upside down");
+  return parts.empty() ? "none" : fmt::format("{}", fmt::join(parts, ", "));
+}
 
 nlohmann::json primitive_json(const Primitive& primitive) {
   using nlohmann::json;
@@ -119,6 +140,33 @@ void print_primitive(std::ostream& out, const Primitive& primitive) {
   line("contact pairs", std::to_string(primitive.contact_pairs.size()));
   line("source", fmt::format("{}, {} members, {}", primitive.provenance.source, primitive.provenance.members, primitive.provenance.licence));
   line("content hash", hex(primitive.content_hash));
+}
+
+Image<Rgb8> draw_body(const TriangleMesh& mesh, const std::string& caption, Rgb8 color) {
+  const Bounds box = bounds(mesh.vertices);
+  BodyPicture picture(box.centre(), 0.5 * box.size().norm());
+  picture.body(mesh, color);
+  return picture.captioned(caption);
+}
+
+Image<Rgb8> draw_symmetry(const Primitive& primitive) {
+  constexpr Rgb8 kAxis{255, 90, 90}, kPlane{120, 230, 140};
+  const TriangleMesh mesh = shape_mesh(primitive, {});
+  const Bounds box = bounds(mesh.vertices);
+  BodyPicture picture(box.centre(), 0.62 * box.size().norm());
+  picture.body(mesh, kBody, 0.6);
+  const Eigen::Vector3d low = box.centre() - 0.58 * box.size(), high = box.centre() + 0.58 * box.size();
+  const auto frame = [&](int axis) {  // the rectangle in the plane x = 0 or y = 0
+    const auto corner = [&](double along, double z) { return axis == 0 ? Eigen::Vector3d(0, along, z) : Eigen::Vector3d(along, 0, z); };
+    const double near = axis == 0 ? low.y() : low.x(), far = axis == 0 ? high.y() : high.x();
+    const Eigen::Vector3d corners[4] = {corner(near, low.z()), corner(far, low.z()), corner(far, high.z()), corner(near, high.z())};
+    for (int k = 0; k < 4; ++k) picture.line(corners[k], corners[(k + 1) % 4], kPlane);
+  };
+  const Symmetry& symmetry = primitive.symmetry;
+  if (symmetry.mirror_x && !symmetry.revolution) frame(0);
+  if (symmetry.mirror_y && !symmetry.revolution) frame(1);
+  if (symmetry.revolution || symmetry.cyclic > 1) picture.line({0, 0, low.z()}, {0, 0, high.z()}, kAxis);
+  return picture.captioned("symmetry: " + symmetry_text(symmetry));
 }
 
 Image<Rgb8> draw_primitive(const Primitive& primitive) {

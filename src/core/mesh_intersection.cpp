@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "gfp/core/mesh.hpp"
+#include "gfp/core/self_intersections.hpp"
 
 // Self-intersections: candidate pairs from a uniform grid, then edge-against-triangle tests. Two triangles cross exactly when
 // an edge of one pierces the other (or they overlap in one plane); edges that start in a shared vertex cannot pierce.
@@ -139,10 +140,10 @@ class TriangleGrid {
   std::vector<std::int32_t> starts_, members_;
 };
 
-}  // namespace
-
-int count_self_intersections(const TriangleMesh& mesh, int limit) {
-  if (mesh.triangles.empty()) return 0;
+/// Calls `found(a, b)` for every pair of triangles that cross, until it returns false.
+template <class Found>
+void visit_crossings(const TriangleMesh& mesh, Found&& found) {
+  if (mesh.triangles.empty()) return;
   std::vector<Bounds> boxes(mesh.triangles.size());
   double mean_side = 0;
   for (std::size_t t = 0; t < boxes.size(); ++t) {
@@ -151,7 +152,6 @@ int count_self_intersections(const TriangleMesh& mesh, int limit) {
   }
   const std::vector<Vector3d> normals = plane_normals(mesh);
   const TriangleGrid grid(boxes, bounds(mesh.vertices), std::max(mean_side, 1e-9));
-  int count = 0;
   for (std::size_t cell = 0; cell < grid.cells(); ++cell) {
     const auto [first, last] = grid.members(cell);
     for (auto a = first; a != last; ++a) {
@@ -161,11 +161,24 @@ int count_self_intersections(const TriangleMesh& mesh, int limit) {
         if ((low.array() > high.array()).any()) continue;
         if (grid.cell_of(low) != cell) continue;  // a pair that shares several cells is looked at once
         if (!cross_each_other(mesh, mesh.triangles[static_cast<std::size_t>(*a)], mesh.triangles[static_cast<std::size_t>(*b)], normals[static_cast<std::size_t>(*a)])) continue;
-        if (++count >= limit) return count;
+        if (!found(*a, *b)) return;
       }
     }
   }
+}
+
+}  // namespace
+
+int count_self_intersections(const TriangleMesh& mesh, int limit) {
+  int count = 0;
+  visit_crossings(mesh, [&](std::int32_t, std::int32_t) { return ++count < limit; });
   return count;
+}
+
+std::vector<std::array<std::int32_t, 2>> find_self_intersections(const TriangleMesh& mesh) {
+  std::vector<std::array<std::int32_t, 2>> pairs;
+  visit_crossings(mesh, [&](std::int32_t a, std::int32_t b) { return pairs.push_back({a, b}), true; });
+  return pairs;
 }
 
 }  // namespace gfp

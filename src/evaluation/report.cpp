@@ -2,34 +2,18 @@
 
 #include <cmath>
 #include <cstdio>
-#include <fstream>
 
 #include "case_picture.hpp"
 #include "gfp/frame/png.hpp"
+#include "html_page.hpp"
 
 namespace gfp {
 namespace {
-
-constexpr const char* kStyle =
-    "body{font:14px sans-serif;margin:1.5em;background:#fcfcfa;color:#222}pre{font-size:12px;overflow-x:auto}"
-    "figure{margin:0 0 .8em;border-top:1px solid #ddd;padding-top:.4em}figcaption{font-size:12px;white-space:pre}"
-    "img{display:block;max-width:100%}h2{margin-top:1.5em}b.bad{color:#b00}b.good{color:#070}button{margin-right:.5em}";
 
 // Sorts the figures of the page by the first method's IoU, or back into the order of the run.
 constexpr const char* kScript =
     "function sortBy(key){const box=document.getElementById('cases');"
     "[...box.children].sort((a,b)=>a.dataset[key]-b.dataset[key]).forEach(f=>box.appendChild(f))}";
-
-std::string escaped(const std::string& text) {
-  std::string result;
-  for (const char c : text) {
-    if (c == '<') result += "&lt;";
-    else if (c == '>') result += "&gt;";
-    else if (c == '&') result += "&amp;";
-    else result += c;
-  }
-  return result;
-}
 
 std::string picture_name(std::size_t index) {
   char name[32];
@@ -53,8 +37,8 @@ std::string caption(const CaseResult& c) {
 }
 
 std::string page(const EvaluationRecord& record) {
-  std::string html = "<!doctype html><meta charset=utf-8><title>gfp eval</title><style>" + std::string(kStyle) + "</style><script>" + kScript + "</script>";
-  html += "<h1>gfp eval</h1><p>" + escaped(record.arguments) + "<br>" + escaped(record.machine) + ", commit " + escaped(record.commit) + ", seed " + std::to_string(record.seed) + "</p>";
+  std::string html = page_start("gfp eval", kScript);
+  html += "<p>" + escaped(record.arguments) + "<br>" + escaped(record.machine) + ", commit " + escaped(record.commit) + ", seed " + std::to_string(record.seed) + "</p>";
   html += "<pre>" + escaped(to_text(record)) + "</pre>";
   html += "<p>Tiles: depth (object tinted); true object from the camera, from behind; per method (";
   for (std::size_t m = 0; m < record.methods.size(); ++m) html += (m > 0 ? ", " : "") + escaped(record.methods[m]);
@@ -66,13 +50,6 @@ std::string page(const EvaluationRecord& record) {
     html += "\n<figure data-index=" + std::to_string(i) + " data-iou=" + std::to_string(iou) + "><figcaption>" + caption(c) + "</figcaption><img loading=lazy src=\"" + picture_name(i) + "\"></figure>";
   }
   return html + "</div>\n";
-}
-
-Result<void> write_text(const std::filesystem::path& path, const std::string& text) {
-  std::ofstream out(path, std::ios::binary);
-  out.write(text.data(), static_cast<std::streamsize>(text.size()));
-  if (!out.flush()) return failure(ErrorCode::kIo, path.string() + ": cannot be written");
-  return {};
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "modelling/contour_solver.hpp"
+#include "gfp/modelling/contour_solver.hpp"
 
 #include <Eigen/SparseCholesky>
 #include <cstddef>

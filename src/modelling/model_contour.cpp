@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include "gfp/core/mesh.hpp"
+#include "gfp/modelling/contour_solver.hpp"
 #include "gfp/modelling/evaluate_fit.hpp"
 #include "gfp/primitive/class_distance.hpp"
-#include "modelling/contour_solver.hpp"
 #include "modelling/model_of_placement.hpp"
 #include "modelling/surface_targets.hpp"
 #include "modelling/symmetry_carry.hpp"

@@ -24,7 +24,7 @@ void average_shapes(const std::vector<std::vector<Eigen::Vector3d>>& members, in
   for (Eigen::Index i = 0; i < points; ++i) primitive.mean.emplace_back(mean.segment<3>(3 * i));
 
   // Members are far fewer than coordinates: the M x M Gram matrix has the same non-zero spectrum as the covariance.
-  const double degrees = static_cast<double>(count - 1);
+  const double degrees = static_cast<double>(std::max<Eigen::Index>(1, count - 1));
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> spectrum(deviations.transpose() * deviations / degrees);
   const double total = spectrum.eigenvalues().sum();
   double kept = 0;
@@ -47,7 +47,7 @@ void average_sizes(const std::vector<Eigen::Vector3d>& sizes_m, Primitive& primi
   for (std::size_t m = 0; m < sizes_m.size(); ++m) logs.col(static_cast<Eigen::Index>(m)) = sizes_m[m].array().log().matrix();
   primitive.log_size_mean = logs.rowwise().mean();
   logs.colwise() -= primitive.log_size_mean;
-  primitive.log_size_covariance = logs * logs.transpose() / static_cast<double>(sizes_m.size() - 1) + kSizeFloor * Eigen::Matrix3d::Identity();
+  primitive.log_size_covariance = logs * logs.transpose() / static_cast<double>(std::max<std::size_t>(1, sizes_m.size() - 1)) + kSizeFloor * Eigen::Matrix3d::Identity();
 }
 
 }  // namespace gfp

@@ -219,10 +219,13 @@ Result<Primitive> read_primitive(const std::filesystem::path& file) {
 
 Result<void> write_primitive(const std::filesystem::path& file, const Primitive& primitive) {
   const std::string bytes = encode_primitive(primitive);
-  std::ofstream stream(file, std::ios::binary);
+  const std::filesystem::path unfinished = file.string() + ".unfinished";
+  std::ofstream stream(unfinished, std::ios::binary);
   stream.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   stream.close();
-  if (!stream) return failure(ErrorCode::kIo, file.string() + ": cannot be written");
+  std::error_code error;
+  if (stream) std::filesystem::rename(unfinished, file, error);
+  if (!stream || error) return failure(ErrorCode::kIo, file.string() + ": cannot be written");
   return {};
 }
 

@@ -29,6 +29,7 @@ Result<std::vector<Primitive>> decode_primitives(std::span<const std::byte> byte
 
 /// Errors: kNotFound, kIo, and as decode_primitive with the file's name in front.
 Result<Primitive> read_primitive(const std::filesystem::path& file);
+/// The file appears whole or not at all: it is written beside its place and renamed. Errors: kIo.
 Result<void> write_primitive(const std::filesystem::path& file, const Primitive& primitive);
 
 /// All *.gfp files of a folder, by file name. Errors: kNotFound, and as read_primitive for the first bad one.

@@ -67,7 +67,7 @@ const std::vector<Owner> kOwners{
     {R"(^jpeglib\.h$)", {"src/frame"}},
     {R"(^OniC|^Driver/Oni|^OpenNI)", {"drivers/openni2"}},
     // Stages stay pure functions: what they do in parallel are loops whose rounds share nothing.
-    {R"(tbb/)", {"src/segmentation", "src/memory", "src/registration", "src/pipeline", "src/app", "src/daemon", "src/evaluation", "src/cli"}},
+    {R"(tbb/)", {"src/segmentation", "src/memory", "src/registration", "src/pipeline", "src/app", "src/daemon", "src/evaluation", "src/collection", "src/cli"}},
 };
 
 struct Include {

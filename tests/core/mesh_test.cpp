@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "gfp/core/random.hpp"
+#include "gfp/core/self_intersections.hpp"
 #include "support/shapes.hpp"
 
 namespace gfp {
@@ -93,6 +94,41 @@ TEST(SelfIntersections, SeeAFlatFold) {
   EXPECT_EQ(count_self_intersections(mesh), 1);
   const TriangleMesh open{{{0, 0, 0}, {0.1, 0, 0}, {0.05, 0.1, 0}, {0.05, -0.08, 0}}, {{0, 1, 2}, {1, 0, 3}}};
   EXPECT_EQ(count_self_intersections(open), 0);
+}
+
+// A slab whose top is pushed through its bottom in one place: it stops there, and goes all the way elsewhere.
+TEST(ApproachWithoutCrossing, StopsOnlyWhereItMust) {
+  const TriangleMesh slab = test::cylinder(0.1, 0.02, 64, 12);  // its two lids are fans: their middles are the last two vertices
+  const auto bottom = slab.vertices.size() - 2, top = slab.vertices.size() - 1;
+  std::vector<Eigen::Vector3d> wanted = slab.vertices;
+  for (auto& p : wanted) p.x() += 0.01;
+  wanted[top] += Eigen::Vector3d(0.003, 0.0017, -0.07);  // off its axis: no edge passes through an edge
+  ASSERT_FALSE(find_self_intersections({wanted, slab.triangles}).empty());
+  const Approach moved = approach_without_crossing(slab.vertices, wanted, slab.triangles);
+  EXPECT_EQ(count_self_intersections({moved.vertices, slab.triangles}), 0);
+  EXPECT_LT(moved.share[top], 1);
+  EXPECT_GT(moved.share[top], 0);
+  EXPECT_GT(moved.vertices[top].z(), moved.vertices[bottom].z());
+  EXPECT_EQ(moved.share[6 * 64], 1) << "the middle of the side";
+}
+
+TEST(ApproachWithoutCrossing, EndsWithTheSoundOneAtWorst) {
+  const TriangleMesh sphere = test::sphere(0.1);
+  std::vector<Eigen::Vector3d> inside_out;
+  for (const auto& p : sphere.vertices) inside_out.emplace_back(-p.x(), p.y() * p.x() * 30, p.z() * p.y() * 40);
+  const Approach moved = approach_without_crossing(sphere.vertices, inside_out, sphere.triangles);
+  EXPECT_EQ(count_self_intersections({moved.vertices, sphere.triangles}), 0);
+}
+
+TEST(FindSelfIntersections, NamesTheTrianglesThatAreCounted) {
+  TriangleMesh mesh = test::box({0.1, 0.1, 0.1});
+  TriangleMesh other = test::box({0.05, 0.05, 0.3});
+  for (auto& v : other.vertices) v.z() -= 0.1;
+  append(mesh, other);
+  const auto pairs = find_self_intersections(mesh);
+  EXPECT_EQ(static_cast<int>(pairs.size()), count_self_intersections(mesh));
+  ASSERT_FALSE(pairs.empty());
+  for (const auto& pair : pairs) EXPECT_NE(pair[0] < 12, pair[1] < 12) << "one of each box";
 }
 
 }  // namespace

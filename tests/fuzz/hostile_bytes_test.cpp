@@ -9,6 +9,7 @@
 #include "config/camera_file.hpp"
 #include "config/daemon_options.hpp"
 #include "fuzz/allocation_watch.hpp"
+#include "gfp/collection/model_collection.hpp"
 #include "gfp/core/mesh_io.hpp"
 #include "gfp/frame/png.hpp"
 #include "gfp/frame/read_file.hpp"
@@ -74,6 +75,10 @@ class HostileBytes : public ::testing::Test {
       stl += std::string(2, '\0');
     }
     const std::string config = "threads: 2\nsensors:\n  - name: front\n    driver: replay\n    input: a.pcd\npipeline: {segmentation: {min_points: 100}, grasp: {seed: 3}}\nlog: {level: warn}\n";
+    folder_.write("psb/m1.off", off);
+    std::string cla = "PSB 1\n60 60\n", csv = "file,class,scale_to_m,up_axis\n";
+    for (int k = 0; k < 60; ++k) cla += fmt::format("\nclass_{} 0 2\n1\n{}\n", k, k), csv += fmt::format("mug/{}.off,mug,0.01,y\n", k);
+    const auto classes = [](const std::filesystem::path& path) { return find_model_classes(path.parent_path()); };
     const std::string camera = "width: 640\nheight: 480\nfx: 525\nfy: 525\ncx: 319.5\ncy: 239.5\ndepth_scale: 0.001\ndistortion: {model: plumb_bob, coefficients: [0.1, -0.2, 0, 0, 0]}\n";
     return {
         {"ascii PCD", test::ascii_pcd(cloud), pcd, 300, false},  // its last number may lose a digit
@@ -86,6 +91,8 @@ class HostileBytes : public ::testing::Test {
         {"ascii PLY", ascii_ply, file_reader("hostile.ply", read), 200, false},
         {"OFF", off, file_reader("hostile.off", read), 40, false},
         {"STL", stl, file_reader("hostile.stl", read), 84},
+        {"Princeton list", cla, file_reader("psb/hostile.cla", classes), 600, false, "psb"},
+        {"table of meshes", csv, file_reader("table/meshes.csv", classes), 600, false, "table"},
         {"camera", camera, [](const std::string& bytes) { return outcome(config::parse_camera_file(bytes, "hostile.yaml")); }, 200, false},
         {"configuration", config, [](const std::string& bytes) { return outcome(config::parse_daemon_options(bytes, "hostile.yaml")); }, 200, false},
         {"primitive", wire::encode_primitive(build_family_primitive("ball")), [](const std::string& bytes) { return outcome(wire::decode_primitive(wire::as_bytes(bytes))); }, 400, true, ""},

@@ -1,0 +1,12 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+#include "cli/exit_code.hpp"
+
+namespace gfp {
+
+/// Subcommands of `gfp primitive` with a file of their own; as in commands.hpp.
+void add_primitive_build_command(CLI::App& primitive, ExitStatus& status);
+
+}  // namespace gfp

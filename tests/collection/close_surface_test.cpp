@@ -1,0 +1,115 @@
+#include "gfp/collection/close_surface.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "gfp/core/random.hpp"
+#include "gfp/evaluation/triangle_tree.hpp"
+#include "support/shapes.hpp"
+
+namespace gfp {
+namespace {
+
+int genus(const TriangleMesh& mesh) { return 1 - (static_cast<int>(mesh.vertices.size()) - static_cast<int>(mesh.triangles.size()) / 2) / 2; }
+
+double farthest(const TriangleMesh& from, const TriangleMesh& to) {
+  const TriangleTree tree(to);
+  double most = 0;
+  for (const auto& v : from.vertices) most = std::max(most, tree.closest(v).distance_m);
+  return most;
+}
+
+/// Every third triangle turned around, every vertex its own, one in forty missing: what collections are made of.
+TriangleMesh soup_of(const TriangleMesh& mesh) {
+  TriangleMesh soup;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    if (t % 40 == 7) continue;
+    const auto first = static_cast<std::int32_t>(soup.vertices.size());
+    for (const auto v : mesh.triangles[t]) soup.vertices.push_back(mesh.vertices[static_cast<std::size_t>(v)]);
+    if (t % 3 == 0) soup.triangles.push_back({first, first + 2, first + 1});
+    else soup.triangles.push_back({first, first + 1, first + 2});
+  }
+  return soup;
+}
+
+void expect_sound(const TriangleMesh& mesh, int expected_genus) {
+  EXPECT_TRUE(examine_topology(mesh).closed);
+  EXPECT_EQ(examine_topology(mesh).components, 1);
+  EXPECT_EQ(genus(mesh), expected_genus);
+  EXPECT_EQ(count_self_intersections(mesh), 0);
+  EXPECT_GT(signed_volume(mesh), 0) << "oriented outwards";
+}
+
+TEST(CloseSurface, GivesBackASphere) {
+  const TriangleMesh sphere = test::sphere(0.1, 48, 24);
+  const auto closed = close_surface(sphere);
+  ASSERT_TRUE(closed);
+  expect_sound(*closed, 0);
+  EXPECT_LT(farthest(*closed, sphere), 0.002);
+  EXPECT_NEAR(signed_volume(*closed), 4.0 / 3 * std::numbers::pi * 1e-3, 0.03e-3 * 4);
+}
+
+TEST(CloseSurface, MendsASoupAndKeepsItsHole) {
+  const TriangleMesh torus = test::torus(0.1, 0.03);
+  const auto closed = close_surface(soup_of(torus));
+  ASSERT_TRUE(closed);
+  expect_sound(*closed, 1);
+  EXPECT_LT(farthest(*closed, torus), 0.006);
+}
+
+TEST(CloseSurface, GivesASheetAThickness) {
+  TriangleMesh sheet;
+  sheet.vertices = {{0, 0, 0}, {0.2, 0, 0}, {0.2, 0.2, 0}, {0, 0.2, 0}};
+  sheet.triangles = {{0, 1, 2}, {0, 2, 3}};
+  const auto closed = close_surface(sheet);
+  ASSERT_TRUE(closed);
+  expect_sound(*closed, 0);
+}
+
+// A bowl drawn as one open sheet gets a wall; a wall as thick as a voxel keeps its thickness, and no more.
+TEST(CloseSurface, KeepsThinWallsThin) {
+  std::vector<Eigen::Vector2d> outer, both;
+  for (int i = 1; i <= 16; ++i) outer.emplace_back(0.08 * std::sin(i * 0.098), 0.08 - 0.08 * std::cos(i * 0.098));
+  both = outer;
+  for (int i = 16; i >= 1; --i) both.emplace_back(0.078 * std::sin(i * 0.098), 0.08 - 0.078 * std::cos(i * 0.098));
+  TriangleMesh sheet = test::revolve(outer, 48);
+  sheet.triangles.erase(std::remove_if(sheet.triangles.begin(), sheet.triangles.end(), [&](const Triangle& t) { return std::max({t[0], t[1], t[2]}) == static_cast<int>(sheet.vertices.size()) - 1; }), sheet.triangles.end());
+  const auto closed = close_surface(sheet), soup = close_surface(soup_of(test::revolve(both, 48)));
+  ASSERT_TRUE(closed && soup);
+  expect_sound(*closed, 0);
+  expect_sound(*soup, 0);
+  const double area = surface_area(sheet), voxel_m = 0.16 / 80;
+  EXPECT_NEAR(signed_volume(*closed) / area, 0.6 * voxel_m, 0.3 * voxel_m);
+  EXPECT_NEAR(signed_volume(*soup) / area, 0.002, 0.0008);
+}
+
+TEST(CloseSurface, TakesASoundSurfaceAsItIs) {
+  TriangleMesh torus = test::torus(0.1, 0.03);
+  for (Triangle& t : torus.triangles) std::swap(t[1], t[2]);  // inside out
+  const auto closed = close_surface(torus, {.vertices = static_cast<int>(torus.vertices.size())});
+  ASSERT_TRUE(closed);
+  expect_sound(*closed, 1);
+  EXPECT_LT(farthest(*closed, torus), 1e-9);
+}
+
+TEST(CloseSurface, SaysWhatIsNoBody) {
+  EXPECT_EQ(close_surface({}).error().code, ErrorCode::kDegenerateGeometry);
+  TriangleMesh point;
+  point.vertices = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
+  point.triangles = {{0, 1, 2}};
+  EXPECT_EQ(close_surface(point).error().code, ErrorCode::kDegenerateGeometry);
+}
+
+TEST(Simplified, KeepsShapeAndGenus) {
+  const TriangleMesh torus = test::torus(0.1, 0.03);
+  const TriangleMesh few = *simplified(torus, 200);
+  EXPECT_LE(few.vertices.size(), 200U);
+  expect_sound(few, 1);
+  EXPECT_NEAR(signed_volume(few), signed_volume(torus), 0.05 * signed_volume(torus));
+}
+
+}  // namespace
+}  // namespace gfp
