@@ -1,8 +1,8 @@
 #include "app/builtin_library.hpp"
 
 #include <cassert>
-#include <map>
 #include <memory>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -24,14 +24,26 @@ const PrimitiveLibrary& builtin_library() {
 }
 
 Result<PrimitiveLibrary> library_with(const std::filesystem::path& folder) {
+  if (folder.empty()) return builtin_library();
   auto own = wire::read_primitive_folder(folder);
   if (!own) return tl::unexpected(own.error());
-  std::map<std::string, PrimitivePtr> by_name;
-  for (const PrimitivePtr& primitive : builtin_library().all()) by_name[primitive->name] = primitive;
-  for (auto& primitive : *own) by_name[primitive.name] = std::make_shared<const Primitive>(primitive);
+  if (own->empty()) return failure(ErrorCode::kNotFound, folder.string() + ": no primitives, expected *.gfp files (gfp primitive build)");
+  std::set<std::string> names, classes;
   std::vector<PrimitivePtr> primitives;
-  for (auto& [name, primitive] : by_name) primitives.push_back(std::move(primitive));
+  for (Primitive& primitive : *own) {
+    if (!names.insert(primitive.name).second) return failure(ErrorCode::kCorruptData, folder.string() + ": two primitives are named " + primitive.name);
+    classes.insert(primitive.class_name);
+    primitives.push_back(std::make_shared<const Primitive>(std::move(primitive)));
+  }
+  for (const PrimitivePtr& primitive : builtin_library().all())
+    if (!names.contains(primitive->name) && !classes.contains(primitive->class_name)) primitives.push_back(primitive);
   return PrimitiveLibrary(std::move(primitives));
+}
+
+Result<PrimitiveLibrary> library_of_configuration(const std::string& primitives, const std::filesystem::path& configuration) {
+  auto library = library_with(primitives.empty() ? std::filesystem::path() : configuration.parent_path() / primitives);
+  if (!library) return failure(library.error().code, "primitives: " + library.error().what);
+  return library;
 }
 
 Result<PrimitivePtr> find_class(const PrimitiveLibrary& library, std::string_view class_name) {

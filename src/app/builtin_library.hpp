@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 #include "gfp/primitive/primitive_library.hpp"
 
@@ -9,9 +10,14 @@ namespace gfp {
 /// The primitives that ship with the program: generated and embedded at build time, read on the first call; safe from any thread.
 const PrimitiveLibrary& builtin_library();
 
-/// The built-in primitives with those of a user's folder (*.gfp) beside them; of one class, the user's is taken.
-/// Errors: kNotFound (no such folder), and what reading a file gives (wire/primitive_file.hpp).
+/// The built-in primitives with those of a user's folder (*.gfp) beside them: a class that the folder has replaces the built-in ones of that
+/// class and name. An empty path: the built-in ones alone.
+/// Errors: kNotFound (no such folder, or no primitive in it), kCorruptData (two files with primitives of one name), and what reading a file
+/// gives (wire/primitive_file.hpp).
 Result<PrimitiveLibrary> library_with(const std::filesystem::path& folder);
+
+/// The same for a folder that a configuration names, relative to it. Errors: as library_with(), with `primitives: ` in front.
+Result<PrimitiveLibrary> library_of_configuration(const std::string& primitives, const std::filesystem::path& configuration);
 
 /// Errors: kNotFound for a class (or alias) that the library does not have, naming the known ones.
 Result<PrimitivePtr> find_class(const PrimitiveLibrary& library, std::string_view class_name);

@@ -17,7 +17,7 @@ namespace {
 struct EvalArguments {
   std::vector<std::string> folders;
   bool families = false, class_known = false, class_estimated = false, json = false;
-  std::string noise = "kinect", mask = "segmented", report;
+  std::string noise = "kinect", mask = "segmented", report, primitives;
   CaseOptions cases;
   EvaluationOptions evaluation;
 };
@@ -29,6 +29,7 @@ std::string describe(const EvalArguments& a) {
   text << "class " << (a.class_estimated ? "estimated" : "known") << ", mask " << a.mask << ", views " << a.cases.views << ", elevation";
   for (const double elevation : a.cases.elevations_deg) text << ' ' << elevation;
   text << ", occlusion " << a.cases.occlusion << ", noise " << a.noise;
+  if (!a.primitives.empty()) text << ", own primitives " << std::filesystem::path(a.primitives).lexically_normal().filename().string();
   if (!a.cases.only.empty()) text << ", only " << a.cases.only;
   return text.str();
 }
@@ -61,7 +62,9 @@ Result<EvaluationRecord> evaluate(const EvalArguments& arguments, const std::vec
         drawn = std::move(written);
       }
     };
-  auto cases = run_evaluation(specs, builtin_library(), arguments.evaluation, observer);
+  const auto library = library_with(arguments.primitives);
+  if (!library) return tl::unexpected(library.error());
+  auto cases = run_evaluation(specs, *library, arguments.evaluation, observer);
   if (!cases) return tl::unexpected(cases.error());
   if (!drawn) return tl::unexpected(drawn.error());
   return EvaluationRecord{machine_name(), source_commit(), arguments.cases.seed, arguments.evaluation.methods, describe(arguments), std::move(*cases)};
@@ -97,6 +100,7 @@ void add_eval_command(CLI::App& app, ExitStatus& status) {
   eval->add_option("DIR", a.folders, "Folders with a meshes.csv (virtual camera) or a poses.json (posed real frames)");
   eval->add_flag("--families", a.families, "Held-out members of the parametric families (what is evaluated where no DIR is given)");
   eval->add_option("--methods", a.evaluation.methods, "Methods by name, side by side on the same views")->delimiter(',')->capture_default_str();
+  eval->add_option("--primitives", a.primitives, kPrimitivesHelp);
   auto* known = eval->add_flag("--class-known", a.class_known, "Tell the methods the class (default)");
   eval->add_flag("--class-estimated", a.class_estimated, "Let the pipeline find the class")->excludes(known);
   eval->add_option("--views", a.cases.views, "Yaws per object and elevation")->check(CLI::Range(1, 360))->capture_default_str();

@@ -24,7 +24,7 @@ namespace fs = std::filesystem;
 /// The command line, as the user gave it.
 struct FitArguments {
   std::vector<std::string> inputs;
-  std::string camera, axes, mask, out, png;
+  std::string camera, axes, mask, out, png, primitives;
   std::optional<double> depth_scale_m;
   bool json = false;
   PipelineOptions pipeline;
@@ -32,6 +32,7 @@ struct FitArguments {
 
 /// Everything that all inputs share, checked before the first is opened.
 struct FitJob {
+  PrimitiveLibrary library;
   InputOptions input;
   Image<std::uint8_t> mask;
   PipelineOptions pipeline;
@@ -50,8 +51,11 @@ Result<FitJob> prepare(const FitArguments& arguments) {
   job.input.axes = arguments.axes;
   job.pipeline = arguments.pipeline;
   if (auto valid = validate(job.pipeline); !valid) return tl::unexpected(as_argument(valid.error()));
+  auto library = library_with(arguments.primitives);
+  if (!library) return tl::unexpected(library.error());
+  job.library = std::move(*library);
   if (!job.pipeline.recognition.only_class.empty()) {
-    const auto known = find_class(builtin_library(), job.pipeline.recognition.only_class);
+    const auto known = find_class(job.library, job.pipeline.recognition.only_class);
     if (!known) return tl::unexpected(as_argument(known.error()));
     job.pipeline.recognition.only_class = (*known)->class_name;
   }
@@ -96,7 +100,7 @@ class FitRun {
   void run(Input& input) {
     const std::string stem = unique_stem(input.stem, stems_);
     const bool many = arguments_.inputs.size() > 1 || input.has_many_frames();
-    run_input(input, builtin_library(), job_.pipeline, job_.mask,
+    run_input(input, job_.library, job_.pipeline, job_.mask,
               {[&](const Frame& frame, const FrameReport& report, const PipelineResult& result) { show(input.name, stem, many, frame, report, result); },
                [&](const Error& error) { status_.fail(std::cerr, input.name, error); }});
   }
@@ -146,6 +150,7 @@ void add_fit_command(CLI::App& app, ExitStatus& status) {
   command.add_option("--profile", pipeline.profile, "What the stages do")->capture_default_str();
   command.add_option("--method", pipeline.method, "How objects are modelled; by default as the profile does");
   command.add_option("--class", pipeline.recognition.only_class, "The objects' class, where it is known");
+  command.add_option("--primitives", arguments->primitives, kPrimitivesHelp);
   command.add_option("--camera", arguments->camera, "Camera file (YAML), or fx,fy,cx,cy in pixels");
   command.add_option("--depth-scale", arguments->depth_scale_m, "Metres per unit of 16-bit depth")->check(CLI::Range(1e-6, 1.0));
   command.add_option("--axes", arguments->axes, "The file's right, down and forward axes, as in xyz or x-y-z");

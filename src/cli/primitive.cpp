@@ -1,4 +1,4 @@
-// gfp primitive list | show NAME | export NAME: what the built-in library holds.
+// gfp primitive list | show NAME | export NAME: what the library holds, built in or one's own.
 #include <fmt/format.h>
 
 #include <array>
@@ -20,15 +20,17 @@ namespace gfp {
 namespace {
 
 struct PrimitiveArguments {
-  std::string name, png, out;
+  std::string name, png, out, primitives;
   std::vector<double> modes;
   std::vector<double> size_m;
   bool json = false;
 };
 
-void list(const PrimitiveArguments& arguments) {
+void list(const PrimitiveArguments& arguments, ExitStatus& status) {
+  const auto library = library_with(arguments.primitives);
+  if (!library) return status.fail(std::cerr, "--primitives", library.error());
   nlohmann::json all = nlohmann::json::array();
-  for (const PrimitivePtr& primitive : builtin_library().all()) {
+  for (const PrimitivePtr& primitive : library->all()) {
     if (arguments.json) all.push_back(primitive_json(*primitive));
     const Eigen::Vector3d size_mm = 1e3 * primitive->typical_size_m();
     if (!arguments.json)
@@ -73,7 +75,9 @@ void export_shape(const PrimitiveArguments& arguments, const Primitive& primitiv
 /// Runs `action` on the named primitive, or says which there are.
 template <class Action>
 void with_primitive(const PrimitiveArguments& arguments, ExitStatus& status, Action&& action) {
-  const auto primitive = find_class(builtin_library(), arguments.name);
+  const auto library = library_with(arguments.primitives);
+  if (!library) return status.fail(std::cerr, "--primitives", library.error());
+  const auto primitive = find_class(*library, arguments.name);
   if (!primitive) return status.fail(std::cerr, "primitive", as_argument(primitive.error()));
   action(arguments, **primitive, status);
 }
@@ -86,7 +90,7 @@ void add_primitive_command(CLI::App& app, ExitStatus& status) {
   const auto arguments = std::make_shared<PrimitiveArguments>();  // lives as long as the callbacks that read it
 
   CLI::App& list_command = *command.add_subcommand("list", "One line a primitive");
-  list_command.callback([arguments] { list(*arguments); });
+  list_command.callback([arguments, &status] { list(*arguments, status); });
   CLI::App& show_command = *command.add_subcommand("show", "Size, modes, typing, symmetry and stable poses of a primitive");
   show_command.add_option("NAME", arguments->name, "Name, class or alias")->required();
   show_command.add_option("--png", arguments->png, "Sheet of the mean shape and its modes at -2, 0 and +2 sigma");
@@ -98,7 +102,10 @@ void add_primitive_command(CLI::App& app, ExitStatus& status) {
   export_command.add_option("--modes", arguments->modes, "Coefficients in standard deviations, as in 1,0,-2")->delimiter(',')->check(CLI::Range(-5.0, 5.0));
   export_command.callback([arguments, &status] { with_primitive(*arguments, status, export_shape); });
   add_primitive_build_command(command, status);
-  for (CLI::App* subcommand : {&list_command, &show_command, &export_command}) subcommand->add_flag("--json", arguments->json, "Machine-readable output");
+  for (CLI::App* subcommand : {&list_command, &show_command, &export_command}) {
+    subcommand->add_option("--primitives", arguments->primitives, kPrimitivesHelp);
+    subcommand->add_flag("--json", arguments->json, "Machine-readable output");
+  }
 }
 
 }  // namespace gfp

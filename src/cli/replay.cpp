@@ -32,7 +32,7 @@ struct Progress {
   std::atomic<std::uint64_t> frames{0}, objects{0};
 };
 
-DaemonParts parts_of(const ReplayArguments& arguments, std::shared_ptr<Progress> progress) {
+DaemonParts parts_of(const ReplayArguments& arguments, const PrimitiveLibrary& library, std::shared_ptr<Progress> progress) {
   return {[arguments](const SensorConfig& sensor) -> Result<std::unique_ptr<FrameSource>> {
             ReplayOptions options = arguments.replay;
             options.sensor = sensor.name;
@@ -40,8 +40,8 @@ DaemonParts parts_of(const ReplayArguments& arguments, std::shared_ptr<Progress>
             if (!source) return tl::unexpected(source.error());
             return std::unique_ptr<FrameSource>(std::move(*source));
           },
-          [progress](const Frame& frame, const SceneMemory& memory, const PipelineOptions& options) {
-            PipelineResult result = process_frame(frame, memory, builtin_library(), options);
+          [progress, &library](const Frame& frame, const SceneMemory& memory, const PipelineOptions& options) {
+            PipelineResult result = process_frame(frame, memory, library, options);
             progress->objects += result.scene.objects.size();
             ++progress->frames;
             return result;
@@ -71,9 +71,10 @@ void replay(ReplayArguments& arguments, ExitStatus& status) {
   arguments.replay.control = std::make_shared<ReplayControl>();
   const auto progress = std::make_shared<Progress>();
   const ListenEnd end(arguments.listen);
-  builtin_library();
+  const auto library = library_of_configuration(options->primitives, arguments.config);
+  if (!library) return status.fail(std::cerr, "replay", library.error());
   std::random_device device;
-  auto daemon = Daemon::start(*options, parts_of(arguments, progress), (static_cast<std::uint64_t>(device()) << 32U) | device());
+  auto daemon = Daemon::start(*options, parts_of(arguments, *library, progress), (static_cast<std::uint64_t>(device()) << 32U) | device());
   if (!daemon) return status.fail(std::cerr, "replay", daemon.error());
   Nanoseconds next_tick = monotonic_now();
   while (!end.reached(progress->frames)) {

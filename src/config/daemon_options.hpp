@@ -89,6 +89,7 @@ struct DaemonOptions {
   int threads = 0;          ///< Of the pipeline; 0: one a core.
   bool lossless = false;    ///< Every frame is processed, however late: for replay. False: the latest frame wins.
   std::string gripper_file; ///< As in config/grippers, relative to the configuration; under what pipeline.gripper says.
+  std::string primitives;   ///< Folder of own primitives (gfp primitive build), relative to the configuration; a class there replaces the built-in one.
   std::vector<SensorConfig> sensors;
   PublishOptions publish;
   ViewOptions view;
@@ -103,6 +104,7 @@ void visit_fields(DaemonOptions& o, Visitor&& field) {
   field("threads", o.threads, 0, 256);
   field("lossless", o.lossless);
   field("gripper_file", o.gripper_file);
+  field("primitives", o.primitives);
   field.list("sensors", o.sensors);
   field.section("publish", o.publish);
   field.section("view", o.view);

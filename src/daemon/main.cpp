@@ -3,7 +3,9 @@
 #include <csignal>
 
 #include <CLI/CLI.hpp>
+#include <atomic>
 #include <iostream>
+#include <memory>
 #include <random>
 
 #include "app/builtin_library.hpp"
@@ -42,22 +44,29 @@ std::uint64_t new_session() {
   return (static_cast<std::uint64_t>(device()) << 32) | device();
 }
 
-gfp::DaemonParts parts() {
-  return {gfp::make_source, [](const gfp::Frame& frame, const gfp::SceneMemory& memory, const gfp::PipelineOptions& options) {
-            return gfp::process_frame(frame, memory, gfp::builtin_library(), options);
+/// The primitives that frames are processed with: those of the last good configuration, from the next frame on.
+using LiveLibrary = std::atomic<std::shared_ptr<const gfp::PrimitiveLibrary>>;
+
+gfp::DaemonParts parts(const LiveLibrary& live) {
+  return {gfp::make_source, [&live](const gfp::Frame& frame, const gfp::SceneMemory& memory, const gfp::PipelineOptions& options) {
+            const auto library = live.load();
+            return gfp::process_frame(frame, memory, *library, options);
           }};
 }
 
-void reload(gfp::Daemon& daemon, const Arguments& arguments) {
+void reload(gfp::Daemon& daemon, LiveLibrary& library, const Arguments& arguments) {
   gfp::tell_reloading();
   const auto options = load(arguments);
   if (!options) return spdlog::error("reload: the old configuration stays: {}", options.error().what);
+  auto primitives = gfp::library_of_configuration(options->primitives, arguments.config);
+  if (!primitives) return spdlog::error("reload: the old configuration stays: {}", primitives.error().what);
   if (const auto done = daemon.reload(*options); !done) return spdlog::error("reload: the old configuration stays: {}", done.error().what);
+  library.store(std::make_shared<const gfp::PrimitiveLibrary>(std::move(*primitives)));
   spdlog::info("reloaded {}", arguments.config);
 }
 
 /// Until SIGTERM or SIGINT.
-void serve(gfp::Daemon& daemon, const Arguments& arguments, const sigset_t& signals) {
+void serve(gfp::Daemon& daemon, LiveLibrary& library, const Arguments& arguments, const sigset_t& signals) {
   gfp::Nanoseconds next_tick = gfp::monotonic_now();
   while (true) {
     const gfp::Nanoseconds now = gfp::monotonic_now();
@@ -70,7 +79,7 @@ void serve(gfp::Daemon& daemon, const Arguments& arguments, const sigset_t& sign
     const timespec wait{static_cast<time_t>(left.count() / 1'000'000'000), static_cast<long>(left.count() % 1'000'000'000)};
     const int signal = sigtimedwait(&signals, nullptr, &wait);
     if (signal == SIGHUP) {
-      reload(daemon, arguments);
+      reload(daemon, library, arguments);
       gfp::tell_service_manager("READY=1");
     }
     if (signal == SIGUSR1 && daemon.recorder() != nullptr) daemon.recorder()->trigger();
@@ -103,10 +112,15 @@ int run(const Arguments& arguments) {
   for (const int signal : {SIGTERM, SIGINT, SIGHUP, SIGUSR1}) sigaddset(&signals, signal);
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);
 
-  gfp::builtin_library();  // made before the first frame, not during it
+  auto primitives = gfp::library_of_configuration(options->primitives, arguments.config);
+  if (!primitives) {
+    std::cerr << "gfpd: " << primitives.error().what << "\n";
+    return gfp::kExitConfig;
+  }
+  LiveLibrary library(std::make_shared<const gfp::PrimitiveLibrary>(std::move(*primitives)));  // it outlives the daemon, whose pipeline reads it
   const std::uint64_t session = new_session();
   std::unique_ptr<gfp::View> view;  // it outlives the daemon, whose threads put into it
-  auto daemon = gfp::Daemon::start(*options, parts(), session);
+  auto daemon = gfp::Daemon::start(*options, parts(library), session);
   if (!daemon) {
     spdlog::error("{}", daemon.error().what);
     return daemon.error().code == gfp::ErrorCode::kInvalidArgument ? gfp::kExitConfig : gfp::kExitUnavailable;
@@ -115,7 +129,7 @@ int run(const Arguments& arguments) {
   if (options->view.enabled) view = start_view(*options, session, (*daemon)->publisher());
   spdlog::info("gfpd {} serves {} sensor(s)", gfp::version(), options->sensors.size());
   gfp::tell_service_manager("READY=1");
-  serve(**daemon, arguments, signals);
+  serve(**daemon, library, arguments, signals);
   gfp::tell_service_manager("STOPPING=1");
   gfp::publish_log_to(nullptr);
   (*daemon)->stop();
