@@ -102,6 +102,7 @@ void add_primitive_command(CLI::App& app, ExitStatus& status) {
   export_command.add_option("--modes", arguments->modes, "Coefficients in standard deviations, as in 1,0,-2")->delimiter(',')->check(CLI::Range(-5.0, 5.0));
   export_command.callback([arguments, &status] { with_primitive(*arguments, status, export_shape); });
   add_primitive_build_command(command, status);
+  add_primitive_retype_command(command, status);
   for (CLI::App* subcommand : {&list_command, &show_command, &export_command}) {
     subcommand->add_option("--primitives", arguments->primitives, kPrimitivesHelp);
     subcommand->add_flag("--json", arguments->json, "Machine-readable output");

@@ -23,12 +23,14 @@ std::size_t count_manual(const Primitive& primitive) {
 /// One standard deviation of each size as a share of it.
 Eigen::Vector3d size_spread(const Primitive& primitive) { return primitive.log_size_covariance.diagonal().cwiseMax(0).cwiseSqrt(); }
 
+bool set_by_hand(const Primitive& primitive, std::size_t vertex) { return !primitive.manual_types.empty() && primitive.manual_types[vertex].has_value(); }
+
 std::string hex(std::uint64_t hash) { return fmt::format("{:016x}", hash); }
 
 // ---- the sheet ----
 
 constexpr int kCell = kPrimitivePicture_px;
-constexpr Rgb8 kPaper{18, 18, 24}, kInk{225, 225, 230}, kBody{120, 170, 220}, kControl{255, 210, 60};
+constexpr Rgb8 kPaper{18, 18, 24}, kInk{225, 225, 230}, kBody{120, 170, 220}, kControl{255, 210, 60}, kByHand{255, 90, 90};
 
 /// Looks at a body of `radius_m` around `centre` from 30 degrees above and to the side.
 Transform view_of(const Eigen::Vector3d& centre, double distance_m) {
@@ -72,7 +74,7 @@ Image<Rgb8> draw_shape(const Primitive& primitive, const std::vector<double>& mo
   BodyPicture picture(bounds(mesh.vertices).centre(), radius_m);
   picture.body(mesh, kBody);
   for (std::size_t i = 0; with_controls && i < mesh.vertices.size(); ++i)
-    if (primitive.topology->types[i] == PointType::kControl) picture.dot(mesh.vertices[i], kControl);
+    if (primitive.topology->types[i] == PointType::kControl) picture.dot(mesh.vertices[i], set_by_hand(primitive, i) ? kByHand : kControl);
   return picture.captioned(caption);
 }
 
