@@ -19,8 +19,9 @@ TEST(OsdLearn, EveryLabelledObjectIsCoveredByOneSegment) {
     sum += covered.sum;
     objects += covered.objects;
     RecordProperty(scene.name, std::to_string(covered.mean()));
+    EXPECT_GE(covered.mean(), 0.95) << scene.name;  // PCL's tutorial: .67 to .98
   }
-  EXPECT_GE(sum / objects, 0.93);
+  EXPECT_GE(sum / objects, 0.97);
 }
 
 }  // namespace
