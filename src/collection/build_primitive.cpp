@@ -15,6 +15,7 @@
 #include "collection/find_symmetry.hpp"
 #include "collection/morph.hpp"
 #include "gfp/collection/close_surface.hpp"
+#include "gfp/core/simplified.hpp"
 #include "gfp/evaluation/surface_samples.hpp"
 #include "gfp/primitive/primitive_of_members.hpp"
 

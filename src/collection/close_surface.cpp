@@ -7,6 +7,7 @@
 
 #include "collection/extract_border.hpp"
 #include "gfp/core/self_intersections.hpp"
+#include "gfp/core/simplified.hpp"
 #include "gfp/evaluation/triangle_tree.hpp"
 #include "gfp/evaluation/voxel_solid.hpp"
 

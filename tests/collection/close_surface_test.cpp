@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "gfp/core/random.hpp"
+#include "gfp/core/simplified.hpp"
 #include "gfp/evaluation/triangle_tree.hpp"
 #include "support/shapes.hpp"
 

@@ -16,8 +16,4 @@ struct CloseSurfaceOptions {
 /// drawn back onto the triangles. Errors: those of fill_solid; kDegenerateGeometry where nothing solid is left.
 Result<TriangleMesh> close_surface(const TriangleMesh& soup, const CloseSurfaceOptions& options = {});
 
-/// About `vertices` of a closed manifold mesh, by quadric error (Garland and Heckbert 1997), with no edge much longer than an even mesh has;
-/// closed, of the same genus, and free of self-intersections if the mesh is. Errors: kDegenerateGeometry where it crosses itself however many are kept.
-Result<TriangleMesh> simplified(const TriangleMesh& mesh, int vertices);
-
 }  // namespace gfp

@@ -1,4 +1,4 @@
-#include "collection/decimate.hpp"
+#include "core/decimate.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>

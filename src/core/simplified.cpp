@@ -1,9 +1,12 @@
+#include "gfp/core/simplified.hpp"
+
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 
-#include "collection/decimate.hpp"
-#include "gfp/collection/close_surface.hpp"
+#include "core/decimate.hpp"
+#include "gfp/core/self_intersections.hpp"
 
 namespace gfp {
 namespace {
