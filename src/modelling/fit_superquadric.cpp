@@ -1,190 +1,52 @@
 #include "gfp/modelling/fit_superquadric.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
-#include <optional>
 
 #include "gfp/modelling/recover_superquadric.hpp"
-#include "modelling/seen_surface.hpp"
-#include "modelling/superquadric_em.hpp"
+#include "modelling/recover_from_view.hpp"
 #include "modelling/volume_model.hpp"
 
 namespace gfp {
 namespace {
 
-using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 constexpr int kMaxTangents = 80;
-constexpr int kSearchPoints = 150, kSearchTangents = 30, kSearchIterations = 10;
-constexpr double kWorthFreedom = 8.0;    ///< Nats by which a freer body (not round, leaning) must explain more.
-constexpr double kModelError = 0.002;    ///< Metres, 1 sigma: things are no superquadrics.
-constexpr double kFallbackExponent = 0.1;
-constexpr double kFallbackHalfSide = 0.01;  ///< Metres: of the box where nothing was seen.
+constexpr double kHalfSideOfNothing = 0.01;  ///< Metres: of the box where nothing was seen.
 
-/// What a recovery hands on: the body in the support frame and how sure its pose is.
-struct Recovered {
-  Superquadric superquadric;
-  double sigma_m = 0.001;
-  int iterations = 0;
-  bool converged = false;
-  Eigen::Matrix<double, 6, 6> pose_information = Eigen::Matrix<double, 6, 6>::Zero();  ///< Support frame, about the centre.
-};
-
-/// Smallest upright box about the points' shadows: yaw of its first side, half sides, centre.
-struct Footprint {
-  double yaw = 0;
-  Vector2d half_sides = Vector2d::Constant(kFallbackHalfSide), centre = Vector2d::Zero();
-};
-
-Footprint smallest_footprint(const std::vector<Vector3d>& points) {
-  Footprint best;
-  double best_area = std::numeric_limits<double>::infinity();
-  for (int step = 0; step < 18; ++step) {
-    const double yaw = step * std::numbers::pi / 36;
-    const Eigen::Rotation2Dd turn(yaw);
-    Vector2d low = Vector2d::Constant(1e300), high = -low;
-    for (const auto& p : points) {
-      const Vector2d q = turn.inverse() * p.head<2>();
-      low = low.cwiseMin(q);
-      high = high.cwiseMax(q);
-    }
-    const double area = (high - low).prod();
-    if (!(area < best_area)) continue;
-    best_area = area;
-    best = {yaw, 0.5 * (high - low), turn * (0.5 * (low + high))};
-  }
-  return best;
-}
-
-/// A nearly sharp box about all points, down to the support where there is one; at least 10 mm a side.
-Superquadric box_about(const SeenSurface& seen, const ObjectView& view) {
+/// Where the tile's middle looks at the support, or 1 m away.
+Superquadric box_of_nothing(const ObjectView& view) {
   Superquadric box;
-  box.epsilon1 = box.epsilon2 = kFallbackExponent;
-  box.half_axes_m.setConstant(kFallbackHalfSide);
-  if (seen.points.empty()) {
-    const double u = 0.5 * (view.tile.u0 + view.tile.u1), v = 0.5 * (view.tile.v0 + view.tile.v1);
-    const Transform T_support_camera = view.T_camera_support.inverse();
-    const Vector3d eye = T_support_camera.translation(), ray = T_support_camera.linear() * view.camera.ray(u, v);
-    const double to_support = -eye.z() / ray.z();
-    const bool meets = view.has_support && to_support > 0.1 && to_support < 10;
-    box.pose.translation() = eye + (meets ? to_support : 1.0) * ray;
-    if (view.has_support) box.pose.translation().z() = kFallbackHalfSide;
-    return box;
-  }
-  const Footprint footprint = smallest_footprint(seen.points);
-  double low = std::numeric_limits<double>::infinity(), high = -low;
-  for (const auto& p : seen.points) low = std::min(low, p.z()), high = std::max(high, p.z());
-  if (view.has_support) low = 0;
-  box.half_axes_m = Vector3d(footprint.half_sides.x(), footprint.half_sides.y(), 0.5 * (high - low)).cwiseMax(0.005);
-  box.pose.linear() = Eigen::AngleAxisd(footprint.yaw, Vector3d::UnitZ()).toRotationMatrix();
-  box.pose.translation() << footprint.centre, (view.has_support ? box.half_axes_m.z() : 0.5 * (low + high));
+  box.epsilon1 = box.epsilon2 = 0.1;
+  box.half_axes_m.setConstant(kHalfSideOfNothing);
+  const double u = 0.5 * (view.tile.u0 + view.tile.u1), v = 0.5 * (view.tile.v0 + view.tile.v1);
+  const Transform T_support_camera = view.T_camera_support.inverse();
+  const Vector3d eye = T_support_camera.translation(), ray = T_support_camera.linear() * view.camera.ray(u, v);
+  const double to_support = -eye.z() / ray.z();
+  const bool meets = view.has_support && to_support > 0.1 && to_support < 10;
+  box.pose.translation() = eye + (meets ? to_support : 1.0) * ray;
+  if (view.has_support) box.pose.translation().z() = kHalfSideOfNothing;
   return box;
 }
 
-/// Upright starts: z up, or lying along the longer and the shorter side.
-std::vector<Superquadric> upright_starts(const Superquadric& box) {
-  Superquadric standing = box;
-  standing.epsilon1 = standing.epsilon2 = 0.6;
-  std::vector<Superquadric> starts{standing};
-  Eigen::Matrix3d lie;
-  lie.col(0) = Vector3d::UnitZ();
-  lie.col(1) = Vector3d::UnitX();
-  lie.col(2) = Vector3d::UnitY();
-  Superquadric lying = standing;  // body z along the box's y
-  lying.pose.linear() = standing.pose.linear() * lie;
-  lying.half_axes_m = Vector3d(standing.half_axes_m.z(), standing.half_axes_m.x(), standing.half_axes_m.y());
-  starts.push_back(lying);
-  Superquadric across = standing;  // body z along the box's x
-  across.pose.linear() = standing.pose.linear() * lie.transpose();
-  across.half_axes_m = Vector3d(standing.half_axes_m.y(), standing.half_axes_m.z(), standing.half_axes_m.x());
-  starts.push_back(across);
-  return starts;
-}
-
-SuperquadricData em_data(const SeenSurface& seen, const ObjectView& view) {
-  SuperquadricData problem;
-  problem.points = seen.outer_points;
-  problem.tangents = seen.tangents;
-  const Vector3d size = bounds(problem.points).size();
-  problem.sigma_m = std::hypot(seen.sigma_m, kModelError);
-  problem.tangent_sigma_m = std::hypot(0.5 * seen.pixel_m, kModelError);
-  problem.range_m = 0.5 * size.norm();
-  problem.on_base = view.has_support;
-  problem.limits.max_half_axis_m = std::max(0.01, 0.7 * size.norm());
-  problem.limits.min_half_axis_m = 0.002;
-  return problem;
-}
-
-/// A solid of revolution about the body's z axis.
-Superquadric rounded(Superquadric s) {
-  s.half_axes_m.x() = s.half_axes_m.y() = std::max(s.half_axes_m.x(), s.half_axes_m.y());
-  s.epsilon2 = 1;
-  return s;
-}
-
-Recovered recover_with_view(const SeenSurface& seen, const ObjectView& view, const Superquadric& box, const FitSuperquadricOptions& options) {
-  using Freedom = SuperquadricFreedom;
-  const Freedom upright{.rotation = Freedom::Rotation::kAboutVertical};
-  const Freedom round{.rotation = Freedom::Rotation::kAboutVertical, .axes = Freedom::Axes::kRound, .epsilon2 = false};
-  const SuperquadricData fine = em_data(seen, view), coarse = thinned(fine, kSearchPoints, kSearchTangents);
-  const EmOptions search{.max_iterations = kSearchIterations};
-  std::optional<EmFit> best, best_round;
-  for (const auto& start : upright_starts(box)) {
-    EmFit fit = maximise(coarse, start, upright, search);
-    if (!best || fit.objective < best->objective) best = fit;
-    fit = maximise(coarse, rounded(start), round, search);
-    if (!best_round || fit.objective < best_round->objective) best_round = fit;
-  }
-  for (const auto& shape : similar_shapes(best->superquadric)) {
-    EmFit fit = maximise(coarse, shape, upright, search);
-    if (fit.objective < best->objective - 1) best = fit;
-  }
-  const EmOptions last{.max_iterations = options.max_iterations};
-  EmFit fit = maximise(fine, best_round->superquadric, round, last);
-  for (const auto& [start, freedom] : {std::pair(best->superquadric, upright), {best->superquadric, Freedom{}}}) {
-    const EmFit freer = maximise(fine, start, freedom, last);
-    if (freer.objective < fit.objective - kWorthFreedom) fit = freer;
-  }
-  // Rotations of EM are about the body's axes; the support's take their place.
-  Eigen::Matrix<double, 6, 6> turn = Eigen::Matrix<double, 6, 6>::Identity();
-  turn.bottomRightCorner<3, 3>() = fit.superquadric.pose.linear().transpose();
-  return {fit.superquadric, fit.sigma_m, fit.iterations, fit.converged, turn.transpose() * fit.information.topLeftCorner<6, 6>() * turn};
-}
-
-Recovered recover_from_points(const SeenSurface& seen, const Superquadric& box, const FitSuperquadricOptions& options) {
+SeenSuperquadric recover_from_points(const SeenSurface& seen, const Superquadric& box, const FitSuperquadricOptions& options) {
   const RecoverSuperquadricOptions recover{.max_iterations = options.max_iterations, .noise_m = seen.sigma_m};
   const auto fit = options.algorithm == SuperquadricAlgorithm::kEms ? recover_superquadric_ems(seen.points, recover)
                                                                      : recover_superquadric_lm(seen.points, recover);
-  if (!fit) return {box, 0.01};
+  if (!fit) return {box};
   return {fit->superquadric, std::max(fit->rms_m, seen.sigma_m), fit->iterations, fit->converged};
-}
-
-/// A recovery that left the object behind: not finite, or far larger than what was seen of it.
-bool plausible(const Superquadric& s, const Superquadric& box) {
-  if (!s.pose.matrix().allFinite() || !s.half_axes_m.allFinite()) return false;
-  const double seen_radius = box.half_axes_m.norm();
-  return s.half_axes_m.norm() < 2.5 * seen_radius && (s.pose.translation() - box.pose.translation()).norm() < 2 * seen_radius;
-}
-
-Vector3d horizontal_axis(const Superquadric& s) {
-  // The body's most horizontal axis among x and z: a lying cylinder points along its length.
-  const Vector3d x = s.pose.linear().col(0), z = s.pose.linear().col(2);
-  return std::abs(z.z()) < 0.5 ? z : x;
 }
 
 }  // namespace
 
 FittedModel fit_superquadric(const ObjectView& view, const FitSuperquadricOptions& options) {
   const SeenSurface seen = collect_seen_surface(view, options.max_points, kMaxTangents);
-  const Superquadric box = box_about(seen, view);
-  const Vector3d extent = bounds(seen.points).size();
-  Recovered result{box, 0.01};
-  const bool enough = seen.outer_points.size() >= 12 && extent.norm() > 0.004;
-  if (enough) result = options.algorithm == SuperquadricAlgorithm::kEmsView ? recover_with_view(seen, view, box, options) : recover_from_points(seen, box, options);
-  if (!plausible(result.superquadric, box)) result = {box, 0.01};
+  const Superquadric box = seen.points.empty() ? box_of_nothing(view) : box_about(seen.points, view.has_support);
+  SeenSuperquadric result{box};
+  if (tells_a_shape(seen))
+    result = options.algorithm == SuperquadricAlgorithm::kEmsView ? recover_from_view(seen, view.has_support, options.max_iterations) : recover_from_points(seen, box, options);
+  if (!is_plausible(result.superquadric, box)) result = {box};
   FittedModel model = volume_model(view, {"superquadric", superquadric_topology(), superquadric_vertices(result.superquadric),
                                           horizontal_axis(result.superquadric), result.sigma_m, result.pose_information, result.superquadric.pose.translation()});
   model.iterations = result.iterations;

@@ -47,8 +47,8 @@ std::vector<T> every_nth(const std::vector<T>& all, int count) {
   return some;
 }
 
-/// The points on the near side of their convex hull: some plane through the point, facing the eye, has (almost) all others behind it.
-/// The inside of a cup has none, and no convex body can explain it.
+}  // namespace
+
 std::vector<Vector3d> near_side_of_hull(const std::vector<Vector3d>& points, const Vector3d& eye) {
   std::vector<double> depth(points.size(), std::numeric_limits<double>::infinity());
   std::vector<double> along(points.size());
@@ -64,8 +64,6 @@ std::vector<Vector3d> near_side_of_hull(const std::vector<Vector3d>& points, con
     if (depth[k] < kHullTolerance + kHullSpacing * size) outer.push_back(points[k]);
   return outer;
 }
-
-}  // namespace
 
 SeenSurface collect_seen_surface(const ObjectView& view, int max_points, int max_tangents) {
   std::vector<Pixel> mask;
@@ -91,7 +89,8 @@ SeenSurface collect_seen_surface(const ObjectView& view, int max_points, int max
   }
   for (const auto& [u, v] : every_nth(outline, max_tangents))
     seen.tangents.push_back({T_support_camera.translation(), (T_support_camera.linear() * view.camera.ray(u, v)).normalized()});
-  seen.outer_points = near_side_of_hull(seen.points, T_support_camera.translation());
+  seen.eye = T_support_camera.translation();
+  seen.outer_points = near_side_of_hull(seen.points, seen.eye);
   seen.sigma_m = view.noise.sigma_m(depth);
   seen.pixel_m = depth / view.camera.fx;
   return seen;

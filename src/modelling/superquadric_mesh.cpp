@@ -3,8 +3,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "gfp/core/sha256.hpp"
 #include "gfp/modelling/superquadric.hpp"
+#include "gfp/primitive/content_hash.hpp"
 #include "modelling/superquadric_norm.hpp"
 
 // The mesh is Barr's spherical product: rings are shrunken copies of one convex polygon (a superellipse in x, y), stacked along
@@ -101,12 +101,7 @@ std::shared_ptr<const Topology> superquadric_topology() {
     topology->filled_triangles = topology->triangles;
     topology->types.assign(kVertices, PointType::kRegular);
     topology->parts.assign(kVertices, Part::kBody);
-    Sha256 hash;
-    hash.put_values(topology->triangles);
-    hash.put_values(topology->filled_triangles);
-    hash.put_values(topology->types);
-    hash.put_values(topology->parts);
-    topology->hash = hash.digest64();
+    topology->hash = topology_hash(*topology);
     return topology;
   }();
   return shared;

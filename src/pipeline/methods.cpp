@@ -13,6 +13,7 @@ constexpr std::array kMethods{
     Method{"gfp_grid26", &fit_gfp_grid26},
     Method{"sphere_snake", &fit_sphere_snake_only},
     Method{"superquadric", &fit_superquadric_only},
+    Method{"multi_superquadric", &fit_multi_superquadric_only},
     Method{"simple_primitive", &fit_simple_primitive_only},
     Method{"nearest_instance", &fit_nearest_instance},
 };

@@ -22,6 +22,7 @@ std::vector<Candidate> fit_gfp_grid26(const ObjectView& view, const PrimitiveLib
 std::vector<Candidate> fit_sphere_snake_only(const ObjectView& view, const PrimitiveLibrary& library, const PipelineOptions& options, StageTimings& timings);
 std::vector<Candidate> fit_simple_primitive_only(const ObjectView& view, const PrimitiveLibrary& library, const PipelineOptions& options, StageTimings& timings);
 std::vector<Candidate> fit_nearest_instance(const ObjectView& view, const PrimitiveLibrary& library, const PipelineOptions& options, StageTimings& timings);
+std::vector<Candidate> fit_multi_superquadric_only(const ObjectView& view, const PrimitiveLibrary& library, const PipelineOptions& options, StageTimings& timings);
 std::vector<Candidate> fit_superquadric_only(const ObjectView& view, const PrimitiveLibrary& library, const PipelineOptions& options, StageTimings& timings);
 
 }  // namespace gfp

@@ -1,4 +1,5 @@
 // The methods that the paper is, or compares itself with (P31).
+#include "gfp/modelling/fit_multi_superquadric.hpp"
 #include "gfp/modelling/fit_simple_primitive.hpp"
 #include "gfp/modelling/model_contour_paper.hpp"
 #include "gfp/recognition/recognise.hpp"
@@ -31,6 +32,10 @@ std::vector<Candidate> fit_gfp_grid26(const ObjectView& view, const PrimitiveLib
 
 std::vector<Candidate> fit_sphere_snake_only(const ObjectView& view, const PrimitiveLibrary&, const PipelineOptions&, StageTimings& timings) {
   return {{timings.measure("modelling", [&] { return fit_sphere_snake(view); }), 0.0}};
+}
+
+std::vector<Candidate> fit_multi_superquadric_only(const ObjectView& view, const PrimitiveLibrary&, const PipelineOptions&, StageTimings& timings) {
+  return {{timings.measure("modelling", [&] { return fit_multi_superquadric(view); }), 0.0}};
 }
 
 std::vector<Candidate> fit_simple_primitive_only(const ObjectView& view, const PrimitiveLibrary&, const PipelineOptions&, StageTimings& timings) {

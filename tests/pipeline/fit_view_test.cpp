@@ -151,7 +151,7 @@ TEST_F(FitView, MethodsAreFoundByNameAndUnknownOnesNameTheKnown) {
   options.method = "guess";
   for (const Error& error : {fit_view(block_view(), library, options).error(), validate(options).error()}) {
     EXPECT_EQ(error.code, ErrorCode::kNotFound);
-    EXPECT_EQ(error.what, "method = guess, expected one of gfp_robust, gfp_paper, gfp_grid26, sphere_snake, superquadric, simple_primitive, nearest_instance");
+    EXPECT_EQ(error.what, "method = guess, expected one of gfp_robust, gfp_paper, gfp_grid26, sphere_snake, superquadric, multi_superquadric, simple_primitive, nearest_instance");
   }
   options = {};
   options.profile = "paperback";
