@@ -18,6 +18,7 @@ void add_diff_command(CLI::App& app, ExitStatus& status);
 void add_echo_command(CLI::App& app, ExitStatus& status);
 void add_fit_command(CLI::App& app, ExitStatus& status);
 void add_eval_command(CLI::App& app, ExitStatus& status);
+void add_experiment_command(CLI::App& app, ExitStatus& status);
 void add_key_command(CLI::App& app, ExitStatus& status);
 void add_primitive_command(CLI::App& app, ExitStatus& status);
 void add_record_command(CLI::App& app, ExitStatus& status);

@@ -16,6 +16,7 @@ int run(int argc, char** argv) {
   app.footer("Every command has --help and --json. Exit codes follow sysexits.h.");
   gfp::add_fit_command(app, status);
   gfp::add_eval_command(app, status);
+  gfp::add_experiment_command(app, status);
   gfp::add_primitive_command(app, status);
   gfp::add_calibrate_command(app, status);
   gfp::add_config_command(app, status);

@@ -4,22 +4,15 @@
 #include <tbb/task_arena.h>
 
 #include <atomic>
-#include <ctime>
 #include <utility>
 
 #include "gfp/pipeline/fit_view.hpp"
 #include "judge_plan.hpp"
 #include "observe_case.hpp"
+#include "thread_cpu_time.hpp"
 
 namespace gfp {
 namespace {
-
-// A case's thread alone: other programs on the machine do not count.
-double thread_cpu_ms() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return 1e3 * static_cast<double>(now.tv_sec) + 1e-6 * static_cast<double>(now.tv_nsec);
-}
 
 struct Fit {
   FittedModel model;

@@ -95,7 +95,7 @@ FittedModel model_placed(const ObjectView& view, const Placement& placement, con
   return model;
 }
 
-FittedModel fit_sphere_snake(const ObjectView& view, const PaperContourOptions& options, ContourTrace* trace) {
+FittedModel fit_sphere_snake(const ObjectView& view, const PaperContourOptions& options, ContourDirections directions, ContourTrace* trace) {
   constexpr double kLeastRadiusM = 0.01;
   const SceneDensity scene = scene_density(view, options);
   Sphere ball = scene.points.empty() ? Sphere{{0, 0, 1}, kLeastRadiusM} : sphere_about(scene.points);
@@ -108,7 +108,7 @@ FittedModel fit_sphere_snake(const ObjectView& view, const PaperContourOptions& 
   Superquadric sphere{Vector3d::Constant(ball.radius), 1, 1, model.T_camera_object};
   sphere.pose.translation() = ball.centre;
   const ContourStart start{{superquadric_vertices(sphere), model.topology->triangles}, std::vector<std::uint8_t>(superquadric_topology()->types.size(), 1), ball.radius};
-  describe(view, start, run_paper_contour(start, scene.count, options, ContourDirections::kNormal), model, trace);
+  describe(view, start, run_paper_contour(start, scene.count, options, directions), model, trace);
   model.size_m = bounds(model.vertices).size();
   return model;
 }

@@ -171,7 +171,7 @@ Placement retrieve_instance(const ObjectView& view, const std::vector<Hypothesis
 
 FittedModel fit_simple_primitive(const ObjectView&) { return test::box_model("simple_primitive", "unknown", {0.1, 0.1, 0.1}, 2.0); }
 
-FittedModel fit_sphere_snake(const ObjectView&, const PaperContourOptions&, ContourTrace*) { return test::box_model("sphere_snake", "unknown", {0.1, 0.1, 0.1}, 2.0); }
+FittedModel fit_sphere_snake(const ObjectView&, const PaperContourOptions&, ContourDirections, ContourTrace*) { return test::box_model("sphere_snake", "unknown", {0.1, 0.1, 0.1}, 2.0); }
 
 FittedModel fit_superquadric(const ObjectView&, const FitSuperquadricOptions&) {
   ++test::script().superquadrics;

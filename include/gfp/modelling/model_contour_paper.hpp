@@ -47,6 +47,7 @@ FittedModel model_placed(const ObjectView& view, const Placement& placement, con
 
 /// The same contour from the sphere about the cluster, 610 points, all of them controls (the paper's comparison, P29). Needs no class;
 /// looks as far as the sphere's centre. Method `sphere_snake`. A view without points gives a 20 mm ball 1 m away.
-FittedModel fit_sphere_snake(const ObjectView& view, const PaperContourOptions& options = {}, ContourTrace* trace = nullptr);
+FittedModel fit_sphere_snake(const ObjectView& view, const PaperContourOptions& options = {}, ContourDirections directions = ContourDirections::kNormal,
+                             ContourTrace* trace = nullptr);
 
 }  // namespace gfp
