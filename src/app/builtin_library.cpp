@@ -23,8 +23,19 @@ const PrimitiveLibrary& builtin_library() {
   return library;
 }
 
-Result<PrimitiveLibrary> library_with(const std::filesystem::path& folder) {
-  if (folder.empty()) return builtin_library();
+namespace {
+
+PrimitiveLibrary with_upsampling(PrimitiveLibrary library, int levels) {
+  if (levels == 0) return library;
+  std::vector<PrimitivePtr> finer;
+  for (const PrimitivePtr& primitive : library.all()) finer.push_back(std::make_shared<const Primitive>(upsampled(*primitive, levels)));
+  return PrimitiveLibrary(std::move(finer));
+}
+
+}  // namespace
+
+Result<PrimitiveLibrary> library_with(const std::filesystem::path& folder, int upsampling) {
+  if (folder.empty()) return with_upsampling(builtin_library(), upsampling);
   auto own = wire::read_primitive_folder(folder);
   if (!own) return tl::unexpected(own.error());
   if (own->empty()) return failure(ErrorCode::kNotFound, folder.string() + ": no primitives, expected *.gfp files (gfp primitive build)");
@@ -37,11 +48,11 @@ Result<PrimitiveLibrary> library_with(const std::filesystem::path& folder) {
   }
   for (const PrimitivePtr& primitive : builtin_library().all())
     if (!names.contains(primitive->name) && !classes.contains(primitive->class_name)) primitives.push_back(primitive);
-  return PrimitiveLibrary(std::move(primitives));
+  return with_upsampling(PrimitiveLibrary(std::move(primitives)), upsampling);
 }
 
-Result<PrimitiveLibrary> library_of_configuration(const std::string& primitives, const std::filesystem::path& configuration) {
-  auto library = library_with(primitives.empty() ? std::filesystem::path() : configuration.parent_path() / primitives);
+Result<PrimitiveLibrary> library_of_configuration(const std::string& primitives, int upsampling, const std::filesystem::path& configuration) {
+  auto library = library_with(primitives.empty() ? std::filesystem::path() : configuration.parent_path() / primitives, upsampling);
   if (!library) return failure(library.error().code, "primitives: " + library.error().what);
   return library;
 }

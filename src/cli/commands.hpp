@@ -6,6 +6,7 @@
 
 namespace gfp {
 
+inline constexpr const char* kUpsamplingHelp = "How often the primitives' edges are halved: finer surfaces, more time";
 inline constexpr const char* kPrimitivesHelp = "Folder of own primitives (gfp primitive build); a class there replaces the built-in one";
 
 /// Each adds one subcommand to `app`; when the command runs (in a CLI11 callback), it says in `status` how it ended.

@@ -18,6 +18,7 @@ struct EvalArguments {
   std::vector<std::string> folders;
   bool families = false, class_known = false, class_estimated = false, json = false;
   std::string noise = "kinect", mask = "segmented", report, primitives;
+  int upsampling = 0;
   CaseOptions cases;
   EvaluationOptions evaluation;
 };
@@ -29,6 +30,7 @@ std::string describe(const EvalArguments& a) {
   text << "class " << (a.class_estimated ? "estimated" : "known") << ", mask " << a.mask << ", views " << a.cases.views << ", elevation";
   for (const double elevation : a.cases.elevations_deg) text << ' ' << elevation;
   text << ", occlusion " << a.cases.occlusion << ", noise " << a.noise;
+  if (a.upsampling > 0) text << ", upsampling " << a.upsampling;
   if (!a.primitives.empty()) text << ", own primitives " << std::filesystem::path(a.primitives).lexically_normal().filename().string();
   if (!a.cases.only.empty()) text << ", only " << a.cases.only;
   return text.str();
@@ -62,7 +64,7 @@ Result<EvaluationRecord> evaluate(const EvalArguments& arguments, const std::vec
         drawn = std::move(written);
       }
     };
-  const auto library = library_with(arguments.primitives);
+  const auto library = library_with(arguments.primitives, arguments.upsampling);
   if (!library) return tl::unexpected(library.error());
   auto cases = run_evaluation(specs, *library, arguments.evaluation, observer);
   if (!cases) return tl::unexpected(cases.error());
@@ -101,6 +103,7 @@ void add_eval_command(CLI::App& app, ExitStatus& status) {
   eval->add_flag("--families", a.families, "Held-out members of the parametric families (what is evaluated where no DIR is given)");
   eval->add_option("--methods", a.evaluation.methods, "Methods by name, side by side on the same views")->delimiter(',')->capture_default_str();
   eval->add_option("--primitives", a.primitives, kPrimitivesHelp);
+  eval->add_option("--upsampling", a.upsampling, kUpsamplingHelp)->check(CLI::Range(0, kMaxUpsampling))->capture_default_str();
   auto* known = eval->add_flag("--class-known", a.class_known, "Tell the methods the class (default)");
   eval->add_flag("--class-estimated", a.class_estimated, "Let the pipeline find the class")->excludes(known);
   eval->add_option("--views", a.cases.views, "Yaws per object and elevation")->check(CLI::Range(1, 360))->capture_default_str();

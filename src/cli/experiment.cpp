@@ -12,12 +12,13 @@ namespace {
 
 struct ExperimentArguments {
   std::string name, folder, report, primitives;
+  int upsampling = 0;
   bool json = false;
   CaseOptions cases;
 };
 
 Result<void> run(const ExperimentArguments& arguments) {
-  const auto library = library_with(arguments.primitives);
+  const auto library = library_with(arguments.primitives, arguments.upsampling);
   if (!library) return tl::unexpected(library.error());
   ProgressBar bar(std::cerr, "experiment");
   const auto experiment = run_experiment(arguments.name, *library, arguments.folder, arguments.cases, [&](std::size_t done, std::size_t total) { bar.show(done, total); });
@@ -39,6 +40,7 @@ void add_experiment_command(CLI::App& app, ExitStatus& status) {
       ->check(CLI::IsMember(experiment_names()));
   experiment->add_option("DIR", a.folder, "Known objects as for gfp eval; without it held-out members of the families");
   experiment->add_option("--primitives", a.primitives, kPrimitivesHelp);
+  experiment->add_option("--upsampling", a.upsampling, kUpsamplingHelp)->check(CLI::Range(0, kMaxUpsampling))->capture_default_str();
   experiment->add_option("--views", a.cases.views, "Yaws per object and elevation")->check(CLI::Range(1, 360))->capture_default_str();
   experiment->add_option("--elevation", a.cases.elevations_deg, "Camera elevations above the table, degrees")->delimiter(',')->check(CLI::Range(5.0, 85.0))->capture_default_str();
   experiment->add_option("--instances", a.cases.instances, "Members per family")->check(CLI::Range(1, 1000))->capture_default_str();

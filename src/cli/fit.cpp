@@ -26,6 +26,7 @@ struct FitArguments {
   std::vector<std::string> inputs;
   std::string camera, axes, mask, out, png, primitives;
   std::optional<double> depth_scale_m;
+  int upsampling = 0;
   bool json = false;
   PipelineOptions pipeline;
 };
@@ -51,7 +52,7 @@ Result<FitJob> prepare(const FitArguments& arguments) {
   job.input.axes = arguments.axes;
   job.pipeline = arguments.pipeline;
   if (auto valid = validate(job.pipeline); !valid) return tl::unexpected(as_argument(valid.error()));
-  auto library = library_with(arguments.primitives);
+  auto library = library_with(arguments.primitives, arguments.upsampling);
   if (!library) return tl::unexpected(library.error());
   job.library = std::move(*library);
   if (!job.pipeline.recognition.only_class.empty()) {
@@ -151,6 +152,7 @@ void add_fit_command(CLI::App& app, ExitStatus& status) {
   command.add_option("--method", pipeline.method, "How objects are modelled; by default as the profile does");
   command.add_option("--class", pipeline.recognition.only_class, "The objects' class, where it is known");
   command.add_option("--primitives", arguments->primitives, kPrimitivesHelp);
+  command.add_option("--upsampling", arguments->upsampling, kUpsamplingHelp)->check(CLI::Range(0, kMaxUpsampling))->capture_default_str();
   command.add_option("--camera", arguments->camera, "Camera file (YAML), or fx,fy,cx,cy in pixels");
   command.add_option("--depth-scale", arguments->depth_scale_m, "Metres per unit of 16-bit depth")->check(CLI::Range(1e-6, 1.0));
   command.add_option("--axes", arguments->axes, "The file's right, down and forward axes, as in xyz or x-y-z");

@@ -71,7 +71,7 @@ void replay(ReplayArguments& arguments, ExitStatus& status) {
   arguments.replay.control = std::make_shared<ReplayControl>();
   const auto progress = std::make_shared<Progress>();
   const ListenEnd end(arguments.listen);
-  const auto library = library_of_configuration(options->primitives, arguments.config);
+  const auto library = library_of_configuration(options->primitives, options->upsampling, arguments.config);
   if (!library) return status.fail(std::cerr, "replay", library.error());
   std::random_device device;
   auto daemon = Daemon::start(*options, parts_of(arguments, *library, progress), (static_cast<std::uint64_t>(device()) << 32U) | device());

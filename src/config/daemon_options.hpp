@@ -13,6 +13,7 @@
 #include "gfp/frame/failing_source.hpp"
 #include "gfp/frame/run_source.hpp"
 #include "gfp/pipeline/pipeline_options.hpp"
+#include "gfp/primitive/upsampled.hpp"
 #include "gfp/recording/recording_series.hpp"
 #include "openni2/openni2_options.hpp"
 #include "publish/publish_options.hpp"
@@ -90,6 +91,7 @@ struct DaemonOptions {
   bool lossless = false;    ///< Every frame is processed, however late: for replay. False: the latest frame wins.
   std::string gripper_file; ///< As in config/grippers, relative to the configuration; under what pipeline.gripper says.
   std::string primitives;   ///< Folder of own primitives (gfp primitive build), relative to the configuration; a class there replaces the built-in one.
+  int upsampling = 0;       ///< How often the primitives' edges are halved (P10): finer surfaces, more time.
   std::vector<SensorConfig> sensors;
   PublishOptions publish;
   ViewOptions view;
@@ -105,6 +107,7 @@ void visit_fields(DaemonOptions& o, Visitor&& field) {
   field("lossless", o.lossless);
   field("gripper_file", o.gripper_file);
   field("primitives", o.primitives);
+  field("upsampling", o.upsampling, 0, kMaxUpsampling);
   field.list("sensors", o.sensors);
   field.section("publish", o.publish);
   field.section("view", o.view);

@@ -58,7 +58,7 @@ void reload(gfp::Daemon& daemon, LiveLibrary& library, const Arguments& argument
   gfp::tell_reloading();
   const auto options = load(arguments);
   if (!options) return spdlog::error("reload: the old configuration stays: {}", options.error().what);
-  auto primitives = gfp::library_of_configuration(options->primitives, arguments.config);
+  auto primitives = gfp::library_of_configuration(options->primitives, options->upsampling, arguments.config);
   if (!primitives) return spdlog::error("reload: the old configuration stays: {}", primitives.error().what);
   if (const auto done = daemon.reload(*options); !done) return spdlog::error("reload: the old configuration stays: {}", done.error().what);
   library.store(std::make_shared<const gfp::PrimitiveLibrary>(std::move(*primitives)));
@@ -112,7 +112,7 @@ int run(const Arguments& arguments) {
   for (const int signal : {SIGTERM, SIGINT, SIGHUP, SIGUSR1}) sigaddset(&signals, signal);
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);
 
-  auto primitives = gfp::library_of_configuration(options->primitives, arguments.config);
+  auto primitives = gfp::library_of_configuration(options->primitives, options->upsampling, arguments.config);
   if (!primitives) {
     std::cerr << "gfpd: " << primitives.error().what << "\n";
     return gfp::kExitConfig;

@@ -113,7 +113,7 @@ TEST_F(OwnPrimitives, ADamagedFileIsAnErrorThatNamesIt) {
   folder_->write("gfpd.yaml", "primitives: damaged\nsensors: [{name: a, driver: synthetic}]\n");
   const int status = std::system((GFPD_PROGRAM " --config " + (folder() / "gfpd.yaml").string() + " 2>" + (folder() / "err").string()).c_str());
   EXPECT_EQ(WEXITSTATUS(status), 78) << "the daemon does not start with less than it was asked for";
-  const auto error = library_of_configuration("damaged", folder() / "gfpd.yaml");
+  const auto error = library_of_configuration("damaged", 0, folder() / "gfpd.yaml");
   ASSERT_FALSE(error);
   EXPECT_EQ(error.error().what.find("primitives: "), 0U);
   EXPECT_EQ(library_with(folder() / "nowhere").error().code, ErrorCode::kNotFound);
