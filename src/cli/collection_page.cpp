@@ -29,6 +29,10 @@ std::string member_figure(const std::string& class_name, std::size_t index, cons
   return figure(member_picture(class_name, index), caption);
 }
 
+Symmetry symmetry_of(const json& symmetry) {
+  return {symmetry.at("revolution"), symmetry.at("cyclic"), symmetry.at("mirror_x"), symmetry.at("mirror_y"), symmetry.at("flip_z")};
+}
+
 std::string class_section(const json& record) {
   const std::string name = record.at("class");
   std::string html = "\n<h2 id=\"" + escaped(name) + "\">" + escaped(name) + "</h2>";
@@ -36,11 +40,11 @@ std::string class_section(const json& record) {
     html += "<p><b class=bad>refused:</b> " + escaped(record.at("reason")) + "</p>";
   } else {
     const json& primitive = record.at("primitive");
-    html += fmt::format("<p>{} points ({} control), genus {}, {}, {} modes, {} of {} members, {:.1f} s, typing {:.0f} ms</p><div class=row>", primitive.at("vertices").get<int>(),
+    html += fmt::format("<p>{} points ({} control), genus {}, {}, {} modes, {} of {} members (template: {}), {:.1f} s, typing {:.1f} ms</p><div class=row>", primitive.at("vertices").get<int>(),
                         primitive.at("control_points").get<int>(), primitive.at("genus").get<int>(), primitive.at("hollow").get<bool>() ? "hollow" : "solid",
-                        primitive.at("modes").get<int>(), primitive.at("provenance").at("members").get<int>(), record.at("members").size(), record.at("seconds").get<double>(),
+                        primitive.at("modes").get<int>(), primitive.at("provenance").at("members").get<int>(), record.at("members").size(), escaped(record.at("template")), record.at("seconds").get<double>(),
                         record.at("typing_ms").get<double>());
-    html += figure(name + "/symmetry.png", "Red: axis; green: mirror planes.");
+    html += figure(name + "/symmetry.png", "Symmetry: " + escaped(symmetry_text(symmetry_of(primitive.at("symmetry")))) + ". Red: axis; green: mirror planes.");
     html += "</div><figure><img loading=lazy src=\"" + escaped(name) + "/sheet.png\"><figcaption>Mean, control points (yellow), and each mode at -2, 0 and +2 sigma.</figcaption></figure>";
   }
   html += "<div class=row>";

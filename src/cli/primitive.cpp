@@ -85,7 +85,7 @@ void with_primitive(const PrimitiveArguments& arguments, ExitStatus& status, Act
 }  // namespace
 
 void add_primitive_command(CLI::App& app, ExitStatus& status) {
-  CLI::App& command = *app.add_subcommand("primitive", "List, show and export the generic primitives");
+  CLI::App& command = *app.add_subcommand("primitive", "List, show, export, build, retype and check generic primitives");
   command.require_subcommand(1);
   const auto arguments = std::make_shared<PrimitiveArguments>();  // lives as long as the callbacks that read it
 
@@ -103,6 +103,7 @@ void add_primitive_command(CLI::App& app, ExitStatus& status) {
   export_command.callback([arguments, &status] { with_primitive(*arguments, status, export_shape); });
   add_primitive_build_command(command, status);
   add_primitive_retype_command(command, status);
+  add_primitive_qa_command(command, status);
   for (CLI::App* subcommand : {&list_command, &show_command, &export_command}) {
     subcommand->add_option("--primitives", arguments->primitives, kPrimitivesHelp);
     subcommand->add_flag("--json", arguments->json, "Machine-readable output");

@@ -168,7 +168,7 @@ Image<Rgb8> draw_symmetry(const Primitive& primitive) {
   if (symmetry.mirror_x && !symmetry.revolution) frame(0);
   if (symmetry.mirror_y && !symmetry.revolution) frame(1);
   if (symmetry.revolution || symmetry.cyclic > 1) picture.line({0, 0, low.z()}, {0, 0, high.z()}, kAxis);
-  return picture.captioned("symmetry: " + symmetry_text(symmetry));
+  return picture.captioned(symmetry.revolution ? "revolution" : symmetry.cyclic > 1 ? fmt::format("{}-fold", symmetry.cyclic) : "symmetry");
 }
 
 Image<Rgb8> draw_primitive(const Primitive& primitive) {

@@ -26,9 +26,12 @@ using Eigen::Vector3d;
 
 constexpr int kYaws = 24;              ///< Turns looked at when two members are compared.
 constexpr int kCandidates = 6;         ///< Members of which the most typical one becomes the template.
-constexpr int kTemplates = 3;          ///< Of the candidates, at most so many are tried, until one reaches all members.
-constexpr int kCompareSamples = 400, kResidualSamples = 2000;
-constexpr double kOddDistance = 0.2;   ///< Of the unit size: one odd member does not decide which one is typical.
+constexpr int kTemplates = 3;          ///< Of the candidates, at most so many are tried, until one reaches all members well.
+constexpr int kCompareSamples = 300, kResidualSamples = 2000;
+constexpr double kFarOff = 0.15;        ///< In the unit cube: points farther from the template are all as bad.
+constexpr double kWellReached = 0.004;   ///< Mean residual at which no other template is tried.
+constexpr int kMostHoles = 3;
+constexpr std::size_t kMostShapes = 60;  ///< Members with their symmetric copies.
 constexpr double kBaseShare = 0.05;    ///< Of the height: the origin is the middle of what is lower.
 constexpr double kDoubtMembers = 2;    ///< Weight of the general priors of size and unexplained shape.
 
@@ -79,7 +82,7 @@ Agreement best_turn(const TriangleTree& template_tree, const std::vector<Vector3
     const Eigen::Matrix3d turn = Eigen::AngleAxisd(yaw_rad, Vector3d::UnitZ()).toRotationMatrix();
     for (std::size_t i = 0; i < points.size(); ++i) moved[i] = turn * points[i];
     double sum = 0;
-    for (const Vector3d& p : in_unit_cube(moved)) sum += template_tree.closest(p).distance_m;
+    for (const Vector3d& p : in_unit_cube(moved)) sum += std::min(kFarOff, template_tree.closest(p, kFarOff).distance_m);
     const double distance = sum / static_cast<double>(std::max<std::size_t>(1, points.size()));
     if (distance < best.distance - 1e-9) best = {distance, yaw_rad};
   };
@@ -128,7 +131,7 @@ int usual_genus(const std::vector<MemberReport>& reports) {
 }
 
 /// Every model of the usual genus as a closed surface, and what is wrong with the others. A model with more holes than usual is closed again, with
-/// its tunnels sealed: scans have some that things do not have.
+/// its tunnels sealed: scans have some that things do not have. So is one with more holes than things have.
 std::vector<Member> close_all(const std::vector<CollectionModel>& models, const BuildPrimitiveOptions& options, std::vector<MemberReport>& reports, Steps& steps,
                               const std::stop_token& stop) {
   std::vector<Result<TriangleMesh>> closed(models.size(), TriangleMesh{});
@@ -137,14 +140,15 @@ std::vector<Member> close_all(const std::vector<CollectionModel>& models, const 
     if (!stop.stop_requested()) closed[k] = close_model(models[k], closing, reports[k]);
     steps.done();
   });
-  const int usual = usual_genus(reports);
+  int usual = usual_genus(reports);
   closing.as_is = false;
   oneapi::tbb::parallel_for(std::size_t{0}, models.size(), [&](std::size_t k) {
-    if (stop.stop_requested() || !reports[k].rejected.empty() || reports[k].genus <= usual) return;
+    if (stop.stop_requested() || !reports[k].rejected.empty() || reports[k].genus <= std::min(usual, kMostHoles)) return;
     MemberReport sealed;
     auto again = close_model(models[k], closing, sealed);
     if (again && sealed.genus < reports[k].genus) closed[k] = std::move(again), reports[k] = std::move(sealed);
   });
+  usual = usual_genus(reports);
   std::vector<Member> members;
   for (std::size_t k = 0; k < models.size(); ++k) {
     if (!reports[k].rejected.empty()) continue;
@@ -177,7 +181,7 @@ std::vector<Candidate> rank_candidates(const std::vector<Member>& members, Steps
     oneapi::tbb::parallel_for(std::size_t{0}, members.size(), [&](std::size_t m) {
       candidate.agreement[m] = m == candidate.member ? Agreement{0, candidate.mirror_yaw_rad} : best_turn(tree, points[m]);
     });
-    for (const Agreement& a : candidate.agreement) candidate.distance += std::min(a.distance, kOddDistance);
+    for (const Agreement& a : candidate.agreement) candidate.distance += a.distance;
     steps.done();
   });
   std::stable_sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) { return a.distance < b.distance; });
@@ -186,6 +190,7 @@ std::vector<Candidate> rank_candidates(const std::vector<Member>& members, Steps
 
 /// A template and what it made of the members.
 struct Trial {
+  std::size_t member = 0;                     ///< The template.
   TriangleMesh shape;
   std::vector<std::vector<Vector3d>> shapes;  ///< Per member.
   std::vector<TriangleMesh> surfaces;         ///< Per member, turned alike.
@@ -200,7 +205,7 @@ struct Trial {
 Result<Trial> morph_onto_all(const std::vector<Member>& members, const Candidate& candidate, const BuildPrimitiveOptions& options, const std::stop_token& stop, Steps* steps) {
   auto shape = simplified(turned(members[candidate.member].surface, candidate.mirror_yaw_rad), options.vertices);
   if (!shape) return tl::unexpected(shape.error());
-  Trial trial{std::move(*shape), std::vector<std::vector<Vector3d>>(members.size()), std::vector<TriangleMesh>(members.size()), std::vector<double>(members.size(), 1.0)};
+  Trial trial{candidate.member, std::move(*shape), std::vector<std::vector<Vector3d>>(members.size()), std::vector<TriangleMesh>(members.size()), std::vector<double>(members.size(), 1.0)};
   oneapi::tbb::parallel_for(std::size_t{0}, members.size(), [&](std::size_t m) {
     if (stop.stop_requested()) return;
     trial.surfaces[m] = turned(members[m].surface, candidate.agreement[m].yaw_rad);
@@ -225,26 +230,63 @@ Result<Trial> best_trial(const std::vector<Member>& members, const BuildPrimitiv
     }
     const int reached = trial->reached(options.max_residual);
     if (!best || reached > best->reached(options.max_residual) || (reached == best->reached(options.max_residual) && trial->distance() < best->distance())) best = std::move(trial);
-    if (best->reached(options.max_residual) == static_cast<int>(members.size())) break;
+    if (best->reached(options.max_residual) == static_cast<int>(members.size()) && best->distance() <= kWellReached * static_cast<double>(members.size())) break;
   }
   return best;
 }
 
-/// The members that the template reached, with the middle of the mean's base as the origin.
-ClassMembers kept_members(Trial& trial, const std::vector<Member>& members, const BuildPrimitiveOptions& options, std::vector<MemberReport>& reports) {
+/// The members that the template reached.
+ClassMembers kept_members(const Trial& trial, const std::vector<Member>& members, const BuildPrimitiveOptions& options, std::vector<MemberReport>& reports) {
   ClassMembers kept;
   kept.triangles = trial.shape.triangles;
   for (std::size_t m = 0; m < members.size(); ++m) {
     MemberReport& report = reports[members[m].model];
     report.residual = trial.residuals[m];
     report.size_m = bounds(trial.surfaces[m].vertices).size();
-    report.surface = std::move(trial.surfaces[m]);
+    report.surface = trial.surfaces[m];
     if (report.residual > options.max_residual)
       report.rejected = "residual = " + std::to_string(report.residual) + " of its size, expected at most " + std::to_string(options.max_residual);
     else
       kept.shapes.push_back(trial.shapes[m]);
   }
   return kept;
+}
+
+TriangleMesh moved(const TriangleMesh& mesh, const Eigen::Matrix3d& motion) {
+  TriangleMesh result = mesh;
+  for (Vector3d& v : result.vertices) v = motion * v;
+  if (motion.determinant() < 0)
+    for (Triangle& t : result.triangles) std::swap(t[1], t[2]);
+  return result;
+}
+
+/// The turns and reflections that leave a class where it is, without the one that does nothing; some of them for a class of revolution.
+std::vector<Eigen::Matrix3d> motions_of(const Symmetry& symmetry) {
+  constexpr int kOfRevolution = 5;  // odd, so that no ring of vertices falls onto itself
+  std::vector<Eigen::Matrix3d> motions;
+  const int turns = symmetry.revolution ? kOfRevolution : symmetry.cyclic;
+  for (int k = 0; k < turns; ++k) {
+    const Eigen::Matrix3d turn = Eigen::AngleAxisd(2 * std::numbers::pi * k / turns, Vector3d::UnitZ()).toRotationMatrix();
+    if (k > 0) motions.push_back(turn);
+    if (symmetry.mirror_y) motions.push_back(turn * Vector3d(1, -1, 1).asDiagonal());
+    else if (symmetry.mirror_x) motions.push_back(turn * Vector3d(-1, 1, 1).asDiagonal());
+  }
+  return motions;
+}
+
+/// Moved by what leaves the class where it is, a member is another one of it: the average and the modes become as symmetric as the class.
+void add_symmetric_copies(const Trial& trial, const Symmetry& symmetry, const BuildPrimitiveOptions& options, ClassMembers& members) {
+  std::vector<const TriangleMesh*> surfaces;
+  for (std::size_t m = 0; m < trial.surfaces.size(); ++m)
+    if (trial.residuals[m] <= options.max_residual) surfaces.push_back(&trial.surfaces[m]);
+  const std::vector<Eigen::Matrix3d> motions = motions_of(symmetry);
+  const std::size_t copies = std::min(motions.size(), kMostShapes / surfaces.size());
+  std::vector<std::vector<Vector3d>> shapes(copies * surfaces.size());
+  oneapi::tbb::parallel_for(std::size_t{0}, shapes.size(), [&](std::size_t k) {
+    const TriangleMesh surface = moved(*surfaces[k % surfaces.size()], motions[k / surfaces.size()]);
+    shapes[k] = morph(trial.shape, surface, TriangleTree(surface));
+  });
+  for (auto& shape : shapes) members.shapes.push_back(std::move(shape));
 }
 
 /// Where the template stands on the ground, every member does: the middle of those vertices is its origin.
@@ -297,9 +339,13 @@ Result<BuiltPrimitive> build_primitive(const std::string& name, const std::vecto
   ClassMembers kept = kept_members(*trial, members, options, built.members);
   if (kept.shapes.size() < std::max<std::size_t>(1, least)) return refuse(too_few(name, kept.shapes.size(), built.members));
 
-  put_on_base(trial->shape, kept);
+  const std::size_t count = kept.shapes.size();
   kept.sound = trial->shape.vertices;
   kept.sound_size_m = bounds(trial->shape.vertices).size();
+  const Symmetry symmetry = find_symmetry(mean_of(kept));
+  add_symmetric_copies(*trial, symmetry, options, kept);
+  if (stop.stop_requested()) return refuse(kStopped);
+  put_on_base(trial->shape, kept);
   const TriangleMesh mean = mean_of(kept);
   Cavity cavity = find_cavity(mean);
   kept.parts = std::move(cavity.parts);
@@ -307,12 +353,14 @@ Result<BuiltPrimitive> build_primitive(const std::string& name, const std::vecto
   built.primitive = primitive_of_members(kept, {.name = name,
                                                 .class_name = name,
                                                 .aliases = {},
-                                                .symmetry = find_symmetry(mean),
+                                                .symmetry = symmetry,
                                                 .genus = genus(mean),
                                                 .hollow = cavity.found,
                                                 .upright_share = options.upright_share,
+                                                .members = static_cast<int>(count),
                                                 .doubt_members = kDoubtMembers,
-                                                .provenance = {"collection " + name, "as its members", static_cast<int>(kept.shapes.size())}});
+                                                .provenance = {"collection " + name, "as its members", static_cast<int>(count)}});
+  built.template_member = members[trial->member].model;
   steps.finish();
   if (members_out) *members_out = built.members;
   return built;

@@ -1,3 +1,4 @@
+#include <Eigen/Geometry>
 #include <algorithm>
 
 #include "gfp/core/self_intersections.hpp"
@@ -7,10 +8,9 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr int kLocalRounds = 8, kGlobalRounds = 10;
 constexpr double kHeldBack = 0.5;  ///< Share of its way that a crossing vertex keeps each round.
-constexpr double kSlowed = 0.8;    ///< Share of its way that everything keeps, once that was not enough.
 constexpr int kSpread = 2;         ///< Rings of neighbours that are slowed down with it, so that the surface does not crease.
+constexpr double kSliver = 1e-3;   ///< A triangle that shrinks to this share of its height has folded.
 
 /// Every vertex is slowed at least half as much as its slowest neighbour.
 void spread(const VertexAdjacency& neighbours, std::vector<double>& slowed) {
@@ -22,28 +22,51 @@ void spread(const VertexAdjacency& neighbours, std::vector<double>& slowed) {
   }
 }
 
+Vector3d scaled_normal(const std::vector<Vector3d>& points, const Triangle& t) {
+  const Vector3d& a = points[static_cast<std::size_t>(t[0])];
+  return (points[static_cast<std::size_t>(t[1])] - a).cross(points[static_cast<std::size_t>(t[2])] - a);
+}
+
+/// The triangles that are in the way: folded against the start, or, where none is, crossing others.
+std::vector<std::int32_t> offenders(const std::vector<Vector3d>& start, const TriangleMesh& now, double least_turn_cosine) {
+  std::vector<std::int32_t> found;
+  for (std::size_t t = 0; t < now.triangles.size() && least_turn_cosine > -1; ++t) {
+    const Vector3d before = scaled_normal(start, now.triangles[t]), after = scaled_normal(now.vertices, now.triangles[t]);
+    if (before.dot(after) < least_turn_cosine * before.norm() * after.norm() || after.squaredNorm() < kSliver * kSliver * before.squaredNorm()) found.push_back(static_cast<std::int32_t>(t));
+  }
+  if (!found.empty()) return found;
+  for (const auto& pair : find_self_intersections(now)) found.insert(found.end(), pair.begin(), pair.end());
+  return found;
+}
+
 }  // namespace
 
-Approach approach_without_crossing(const std::vector<Vector3d>& sound, const std::vector<Vector3d>& wanted, const std::vector<Triangle>& triangles) {
+Approach approach_without_crossing(const std::vector<Vector3d>& start, const std::vector<Vector3d>& wanted, const std::vector<Triangle>& triangles, const ApproachOptions& options) {
   TriangleMesh now{wanted, triangles};
-  std::vector<double> share(sound.size(), 1.0);
-  const VertexAdjacency neighbours = vertex_adjacency(now);
-  for (int round = 0; round <= kLocalRounds + kGlobalRounds; ++round) {
-    const auto crossings = find_self_intersections(now);
-    if (crossings.empty()) break;
-    if (round < kLocalRounds) {
-      std::vector<double> slowed(sound.size(), 1.0);
-      for (const auto& pair : crossings)
-        for (const auto t : pair)
-          for (const auto v : triangles[static_cast<std::size_t>(t)]) slowed[static_cast<std::size_t>(v)] = kHeldBack;
+  Approach approach{{}, std::vector<double>(start.size(), 1.0), false};
+  VertexAdjacency neighbours;
+  std::vector<double> local;
+  const int rounds = options.local_rounds + static_cast<int>(options.then.size());
+  for (int round = 0;; ++round) {
+    const auto in_the_way = offenders(start, now, options.least_turn_cosine);
+    approach.sound = in_the_way.empty();
+    if (approach.sound || round == rounds) break;
+    if (round < options.local_rounds) {
+      if (round == 0) neighbours = vertex_adjacency(now);
+      std::vector<double> slowed(start.size(), 1.0);
+      for (const auto t : in_the_way)
+        for (const auto v : triangles[static_cast<std::size_t>(t)]) slowed[static_cast<std::size_t>(v)] = kHeldBack;
       spread(neighbours, slowed);
-      for (std::size_t i = 0; i < share.size(); ++i) share[i] *= slowed[i];
+      for (std::size_t i = 0; i < slowed.size(); ++i) approach.share[i] *= slowed[i];
+      local = approach.share;
     } else {
-      for (double& s : share) s *= round < kLocalRounds + kGlobalRounds ? kSlowed : 0.0;
+      const double all = options.then[static_cast<std::size_t>(round - options.local_rounds)];
+      for (std::size_t i = 0; i < start.size(); ++i) approach.share[i] = all * (local.empty() ? 1.0 : local[i]);
     }
-    for (std::size_t i = 0; i < sound.size(); ++i) now.vertices[i] = sound[i] + share[i] * (wanted[i] - sound[i]);
+    for (std::size_t i = 0; i < start.size(); ++i) now.vertices[i] = start[i] + approach.share[i] * (wanted[i] - start[i]);
   }
-  return {std::move(now.vertices), std::move(share)};
+  approach.vertices = std::move(now.vertices);
+  return approach;
 }
 
 }  // namespace gfp

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <queue>
+#include <utility>
 
 namespace gfp {
 namespace {
@@ -37,8 +38,8 @@ struct Quadric {
 
 class Decimation {
  public:
-  Decimation(const TriangleMesh& mesh, double longest_edge_m)
-      : points_(mesh.vertices), triangles_(mesh.triangles), fans_(points_.size()), quadrics_(points_.size()), stamps_(points_.size(), 0), marks_(points_.size(), 0),
+  Decimation(const TriangleMesh& mesh, double longest_edge_m, std::vector<std::uint8_t> locked)
+      : points_(mesh.vertices), triangles_(mesh.triangles), fans_(points_.size()), quadrics_(points_.size()), stamps_(points_.size(), 0), marks_(points_.size(), 0), locked_(std::move(locked)),
         left_(static_cast<int>(points_.size())), longest_squared_(longest_edge_m * longest_edge_m) {
     const Vector3d origin = bounds(points_).centre();
     for (Vector3d& p : points_) p -= origin;  // quadrics cancel far from the origin
@@ -88,6 +89,7 @@ class Decimation {
   /// Queues the vertex's cheapest allowed collapse.
   void consider(std::int32_t from) {
     const int stamp = ++stamps_[at(from)];
+    if (!locked_.empty() && locked_[at(from)] != 0) return;
     neighbours(from, ring_);
     ranked_.clear();
     for (const auto to : ring_) {
@@ -166,6 +168,7 @@ class Decimation {
   std::vector<std::vector<std::int32_t>> fans_;  ///< Triangles of every vertex; empty: it is gone.
   std::vector<Quadric> quadrics_;
   std::vector<int> stamps_, marks_;
+  std::vector<std::uint8_t> locked_;
   int mark_ = 0, left_;
   double longest_squared_;
   Vector3d origin_;
@@ -176,6 +179,8 @@ class Decimation {
 
 }  // namespace
 
-TriangleMesh decimated(const TriangleMesh& mesh, int vertices, double longest_edge_m) { return Decimation(mesh, longest_edge_m).run(vertices); }
+TriangleMesh decimated(const TriangleMesh& mesh, int vertices, double longest_edge_m, std::vector<std::uint8_t> locked) {
+  return Decimation(mesh, longest_edge_m, std::move(locked)).run(vertices);
+}
 
 }  // namespace gfp

@@ -15,7 +15,7 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kSplit = 1.4, kLongest = 2.0;  ///< Longest edges before and after decimation, in edges of an even mesh with as many vertices.
-constexpr int kTries = 4;                       ///< With half as many vertices more each time.
+constexpr int kTries = 8;                       ///< With what crossed left as fine as it was.
 constexpr int kSplitRounds = 12;
 
 /// Halves edges longer than the bound; the surface stays where it is.
@@ -37,17 +37,30 @@ TriangleMesh with_short_edges(TriangleMesh mesh, double longest) {
   return mesh;
 }
 
+/// Locks the vertices around the triangles that cross.
+void lock_around(const TriangleMesh& few, const std::vector<std::array<std::int32_t, 2>>& crossings, const TriangleMesh& mesh, std::vector<std::uint8_t>& locked) {
+  for (const auto& pair : crossings) {
+    Bounds box;
+    for (const auto t : pair)
+      for (const auto v : few.triangles[static_cast<std::size_t>(t)]) box.include(few.vertices[static_cast<std::size_t>(v)]);
+    for (std::size_t i = 0; i < mesh.vertices.size(); ++i)
+      if ((mesh.vertices[i].array() >= box.low.array()).all() && (mesh.vertices[i].array() <= box.high.array()).all()) locked[i] = 1;
+  }
+}
+
 }  // namespace
 
 Result<TriangleMesh> simplified(const TriangleMesh& mesh, int vertices) {
-  const double area = surface_area(mesh);
-  double wanted = vertices;
-  for (int attempt = 0; attempt < kTries; ++attempt, wanted *= 1.5) {
-    const double even_edge = std::sqrt(area / (0.866 * wanted));  // equilateral triangles, two a vertex
-    TriangleMesh few = decimated(with_short_edges(mesh, kSplit * even_edge), static_cast<int>(wanted), kLongest * even_edge);
-    if (count_self_intersections(few, 1) == 0) return few;
+  const double even_edge = std::sqrt(surface_area(mesh) / (0.866 * vertices));  // equilateral triangles, two a vertex
+  TriangleMesh now = with_short_edges(mesh, kSplit * even_edge);
+  std::vector<std::uint8_t> locked(now.vertices.size(), 0);
+  for (int attempt = 0; attempt < kTries; ++attempt) {
+    TriangleMesh few = decimated(now, vertices, kLongest * even_edge, locked);
+    const auto crossings = find_self_intersections(few);
+    if (crossings.empty()) return few;
+    lock_around(few, crossings, now, locked);
   }
-  return failure(ErrorCode::kDegenerateGeometry, "the surface crosses itself with " + std::to_string(static_cast<int>(wanted / 1.5)) + " vertices");
+  return failure(ErrorCode::kDegenerateGeometry, "the surface crosses itself when it is simplified to " + std::to_string(vertices) + " vertices");
 }
 
 }  // namespace gfp

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "gfp/core/mesh.hpp"
+#include "gfp/core/self_intersections.hpp"
 #include "gfp/modelling/contour_solver.hpp"
 #include "gfp/modelling/evaluate_fit.hpp"
 #include "gfp/primitive/class_distance.hpp"
@@ -25,6 +26,7 @@ constexpr double kFirstGateM = 0.015, kLastGateM = 0.008;  ///< Data farther alo
 constexpr int kStepsPerTarget = 3;                         ///< Semi-implicit steps before visibility and targets are looked up again.
 constexpr double kSettledM = 1e-4;                         ///< P25: the largest move of a settled contour.
 constexpr double kMovedM = 3e-4;                           ///< A vertex that moved less is frozen (P27).
+constexpr int kLocalRetreats = 3;
 constexpr double kLeastFlip = 0.1;                         ///< Cosine between a triangle's normal before and after.
 
 struct Contour {
@@ -40,21 +42,6 @@ std::vector<Vector3d> displaced(const std::vector<Vector3d>& rest, const Eigen::
   std::vector<Vector3d> result(rest);
   for (std::size_t i = 0; i < rest.size(); ++i) result[i] += share * u.row(static_cast<Eigen::Index>(i)).transpose();
   return result;
-}
-
-bool folds(const std::vector<Vector3d>& rest, const std::vector<Vector3d>& moved, const std::vector<Triangle>& triangles) {
-  const auto area = [](const std::vector<Vector3d>& v, const Triangle& t) {
-    const Vector3d& a = v[static_cast<std::size_t>(t[0])];
-    return Vector3d((v[static_cast<std::size_t>(t[1])] - a).cross(v[static_cast<std::size_t>(t[2])] - a));
-  };
-  return std::any_of(triangles.begin(), triangles.end(), [&](const Triangle& t) {
-    const Vector3d before = area(rest, t), after = area(moved, t);
-    return before.dot(after) < kLeastFlip * before.norm() * after.norm() || after.squaredNorm() < 1e-6 * before.squaredNorm();
-  });
-}
-
-bool crosses_itself(const std::vector<Vector3d>& vertices, const std::vector<Triangle>& triangles) {
-  return count_self_intersections({vertices, triangles}, 1) > 0;
 }
 
 /// Moves the rest shape onto the data. Not sound where not even the rest shape is.
@@ -84,14 +71,10 @@ void run_contour(const ObjectView& view, const Primitive& primitive, const Model
     contour.vertices = displaced(contour.rest, u, 1.0);
     gate = std::max(kLastGateM, 0.6 * gate);
   }
-  // Chain of retreats: as much of the local displacement as neither folds nor crosses.
-  for (const double share : {1.0, 0.7, 0.4, 0.15, 0.0}) {
-    contour.vertices = displaced(contour.rest, u, share);
-    if (!folds(contour.rest, contour.vertices, triangles) && !crosses_itself(contour.vertices, triangles)) {
-      contour.sound = true;
-      return;
-    }
-  }
+  // Retreats: what folds or crosses is held back, with its surroundings; where that is not enough, all of it.
+  Approach reached = approach_without_crossing(contour.rest, displaced(contour.rest, u, 1.0), triangles, {.local_rounds = kLocalRetreats, .then = {0.7, 0.4, 0.15, 0.0}, .least_turn_cosine = kLeastFlip});
+  contour.vertices = std::move(reached.vertices);
+  contour.sound = reached.sound;
 }
 
 /// On the table, not in it and not above it.

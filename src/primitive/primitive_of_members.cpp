@@ -1,5 +1,6 @@
 #include "gfp/primitive/primitive_of_members.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 
@@ -90,14 +91,15 @@ Primitive primitive_of_members(const ClassMembers& members, const ClassFacts& fa
   primitive.symmetry = facts.symmetry;
   primitive.genus = facts.genus;
   primitive.hollow = facts.hollow;
-  average_shapes(canonical(members), kModes, primitive);
+  const int count = facts.members > 0 ? facts.members : static_cast<int>(members.shapes.size());
+  average_shapes(canonical(members), std::min(kModes, count - 1), primitive);
   average_sizes(members.sizes_m, primitive);
   const auto topology = std::make_shared<Topology>();
   topology->triangles = members.triangles;
   topology->filled_triangles = members.filled_triangles;
   topology->parts = members.parts;
   primitive.topology = topology;
-  if (facts.doubt_members > 0) widen(facts.doubt_members, static_cast<int>(members.shapes.size()), primitive);
+  if (facts.doubt_members > 0) widen(facts.doubt_members, count, primitive);
   if (!members.sound.empty()) {
     std::vector<Eigen::Vector3d> sound;
     for (const auto& p : members.sound) sound.push_back(p.cwiseQuotient(members.sound_size_m));

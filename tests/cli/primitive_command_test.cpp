@@ -42,6 +42,17 @@ TEST(PrimitiveCommand, ExportsAClosedMeshOfTheSizeAskedFor) {
   }
 }
 
+TEST(PrimitiveCommand, ChecksWhatAPrimitivePromises) {
+  const test::TemporaryFolder folder;
+  const json all = run_gfp("primitive list --json").lines().at(0);
+  for (const json& primitive : all) {
+    const CommandResult result = run_gfp("primitive qa " + primitive["name"].get<std::string>() + " --json --out " + folder.path().string());
+    EXPECT_EQ(result.exit_code, 0) << result.out << result.err;
+  }
+  for (const char* file : {"mug.html", "mug.sheet.png", "mug.symmetry.png"}) EXPECT_TRUE(std::filesystem::exists(folder / file)) << file;
+  EXPECT_EQ(run_gfp("primitive qa kettledrum").exit_code, 64);
+}
+
 TEST(PrimitiveCommand, RefusesWhatItCannotDo) {
   EXPECT_EQ(run_gfp("primitive show kettledrum").exit_code, 64);
   EXPECT_EQ(run_gfp("primitive export mug --out mug.stl").exit_code, 64);

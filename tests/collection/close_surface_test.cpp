@@ -104,6 +104,21 @@ TEST(CloseSurface, SaysWhatIsNoBody) {
   EXPECT_EQ(close_surface(point).error().code, ErrorCode::kDegenerateGeometry);
 }
 
+// A shell a millimetre thick with few vertices: its walls would pass through each other, so it is left finer where they do.
+TEST(Simplified, NeverCrossesThinWalls) {
+  std::vector<Eigen::Vector2d> both;
+  for (int i = 1; i <= 24; ++i) both.emplace_back(0.08 * std::sin(i * 0.065), 0.08 - 0.08 * std::cos(i * 0.065));
+  for (int i = 24; i >= 1; --i) both.emplace_back(0.0796 * std::sin(i * 0.065), 0.08 - 0.0796 * std::cos(i * 0.065));
+  const TriangleMesh shell = test::revolve(both, 64);
+  ASSERT_EQ(count_self_intersections(shell), 0);
+  for (const int vertices : {100, 200, 400}) {
+    const auto few = simplified(shell, vertices);
+    ASSERT_TRUE(few) << vertices;
+    expect_sound(*few, 0);
+    EXPECT_LT(few->vertices.size(), shell.vertices.size());
+  }
+}
+
 TEST(Simplified, KeepsShapeAndGenus) {
   const TriangleMesh torus = test::torus(0.1, 0.03);
   const TriangleMesh few = *simplified(torus, 200);

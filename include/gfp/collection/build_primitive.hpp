@@ -40,11 +40,13 @@ struct MemberReport {
 struct BuiltPrimitive {
   Primitive primitive;
   std::vector<MemberReport> members;  ///< As given.
+  std::size_t template_member = 0;    ///< The one that was morphed onto the others.
 };
 
 /// A generic primitive from models of one class (P5, P6): each is made one closed surface; those of another genus than most are left out;
 /// the others are turned about z until they agree with the most typical one, which is morphed onto all of them; those that it does not
-/// reach are left out (if any, the next typical ones are tried too, and the one that reaches most is taken); the rest is averaged.
+/// reach are left out (where it does not reach all well, the next typical ones are tried too, and the best is taken); the rest is averaged,
+/// with copies turned and mirrored as the class allows.
 /// The mean shape's mirror plane becomes y = 0 and what reaches out goes to +x; the middle of its base is the origin.
 /// At most members - 1 modes; few members leave wide priors. A cavity makes it hollow, with a lid on its rim. Symmetry is measured, not told.
 ///

@@ -29,6 +29,7 @@ struct ClassFacts {
   int genus = 0;
   bool hollow = false;
   double upright_share = 0.75;  ///< Prior of the canonical pose.
+  int members = 0;              ///< Of which the shapes are symmetric copies, one after the other; 0: every shape is a member.
   double doubt_members = 0;     ///< Weight of wide general priors of size and unexplained shape, as so many members; 0: the members say it all.
   Provenance provenance;
 };
