@@ -7,7 +7,7 @@
 
 #include "gfp/core/mesh.hpp"
 #include "gfp/memory/object_points.hpp"
-#include "registration/icp.hpp"
+#include "registration/align_icp.hpp"
 #include "registration/nearest_point_field.hpp"
 
 namespace gfp {
@@ -147,7 +147,7 @@ Placement register_paper(const ObjectView& view, const Hypothesis& hypothesis, c
 
   const Matrix3d R = RotationSearch(cluster, points, !primitive.symmetry.revolution, options).run();
   for (auto& p : points) p = R * p;
-  const IcpResult icp = align_icp(cluster, points, options.icp_iterations);
+  const IcpResult icp = align_icp_pcl(cluster, points, options.icp_iterations);
   const Transform T_cluster_points = icp.T_target_source.inverse();
 
   // p' = s R (p - m_M) + m_C, and what ICP adds (P15).

@@ -9,7 +9,7 @@
 #include "gfp/core/mesh.hpp"
 #include "gfp/core/random.hpp"
 #include "gfp/memory/object_points.hpp"
-#include "registration/icp.hpp"
+#include "registration/align_icp.hpp"
 #include "registration/nearest_point_field.hpp"
 
 namespace gfp {

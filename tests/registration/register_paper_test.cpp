@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "gfp/memory/object_points.hpp"
-#include "registration/icp.hpp"
+#include "registration/align_icp.hpp"
 #include "registration/nearest_point_field.hpp"
 #include "support/simple_primitives.hpp"
 #include "support/view_of_mesh.hpp"
@@ -73,6 +73,34 @@ TEST(AlignIcp, TakesBackASmallMotion) {
   EXPECT_LT(result.mean_squared_m2, 1e-7);
   EXPECT_FALSE(align_icp({}, target, 10).converged);
   EXPECT_FALSE(align_icp(source, target, 0).converged);
+}
+
+// Onto half of what the target has, from 8 degrees and 10 mm away: at least as near as PCL's.
+TEST(AlignIcp, ComesAsNearAsPcl) {
+  const PrimitivePtr box = test::box_primitive();
+  const auto target = shape(*box, {0.1, 0.14, 0.08});
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    Random random(seed);
+    const Transform motion = Transform(Eigen::Translation3d(0.006, -0.007, 0.004) * Eigen::AngleAxisd(0.14, Vector3d(1, 2, 3).normalized()));
+    std::vector<Vector3d> source;
+    while (source.size() < 1500) {
+      const auto& t = box->topology->triangles[static_cast<std::size_t>(random.below(static_cast<int>(box->topology->triangles.size())))];
+      const double a = random.uniform(), b = random.uniform() * (1 - a);
+      const auto at = [&](int k) { return target[static_cast<std::size_t>(t[k])]; };
+      const Vector3d p = a * at(0) + b * at(1) + (1 - a - b) * at(2);
+      if (p.x() + p.z() > 0.04) source.push_back(motion * (p + 0.001 * Vector3d(random.normal(), random.normal(), random.normal())));
+    }
+    const IcpResult ours = align_icp(source, target, 200), pcl = align_icp_pcl(source, target, 200);
+    EXPECT_TRUE(ours.converged);
+    EXPECT_LT(ours.mean_squared_m2, 1.02 * pcl.mean_squared_m2) << "seed " << seed;
+    double squared = 0;
+    for (const auto& p : source) {
+      double least = 1;
+      for (const auto& q : target) least = std::min(least, (ours.T_target_source * p - q).squaredNorm());
+      squared += least / static_cast<double>(source.size());
+    }
+    EXPECT_NEAR(ours.mean_squared_m2, squared, 1e-12);  // each point's exact nearest
+  }
 }
 
 // Within a cell's diagonal of the truth, inside the grid and outside.

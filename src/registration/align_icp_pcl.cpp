@@ -1,7 +1,7 @@
 #include <pcl/point_types.h>
 #include <pcl/registration/icp.h>
 
-#include "registration/icp.hpp"
+#include "registration/align_icp.hpp"
 
 namespace gfp {
 namespace {
@@ -29,7 +29,7 @@ Transform rigid(const Eigen::Matrix4f& matrix, const Eigen::Vector3d& origin) {
 
 }  // namespace
 
-IcpResult align_icp(const std::vector<Eigen::Vector3d>& source, const std::vector<Eigen::Vector3d>& target, int max_iterations) {
+IcpResult align_icp_pcl(const std::vector<Eigen::Vector3d>& source, const std::vector<Eigen::Vector3d>& target, int max_iterations) {
   if (source.size() < 3 || target.size() < 3 || max_iterations < 1) return {};
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();
   for (const auto& p : target) origin += p / static_cast<double>(target.size());
@@ -41,7 +41,7 @@ IcpResult align_icp(const std::vector<Eigen::Vector3d>& source, const std::vecto
   Cloud moved;
   icp.align(moved);
   if (!icp.getFinalTransformation().allFinite()) return {};
-  return {rigid(icp.getFinalTransformation(), origin), icp.getFitnessScore(), icp.hasConverged()};
+  return {rigid(icp.getFinalTransformation(), origin), icp.getFitnessScore(), icp.hasConverged(), max_iterations};
 }
 
 }  // namespace gfp
