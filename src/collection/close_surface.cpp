@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
+#include <utility>
 
 #include "collection/extract_border.hpp"
 #include "gfp/core/self_intersections.hpp"
@@ -21,20 +21,24 @@ constexpr std::size_t kMostAsIs = 100'000;    ///< Triangles of a mesh that is l
 constexpr double kReach = 3.0;                ///< Voxels over which the border is drawn back onto the triangles.
 constexpr double kLeastThickness = 0.6;       ///< Voxels: what sheets and thinner walls are given.
 
-/// Equal vertices made one, and what then is no triangle left out.
-TriangleMesh welded(const TriangleMesh& soup, double weld_m) {
-  const auto cell = [&](std::size_t i) -> std::array<long long, 3> {
-    const Vector3d& v = soup.vertices[i];
-    return {std::llround(v.x() / weld_m), std::llround(v.y() / weld_m), std::llround(v.z() / weld_m)};
-  };
-  std::vector<std::size_t> order(soup.vertices.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return cell(a) < cell(b); });
+/// Equal vertices made one, those of no triangle and what then is no triangle left out.
+TriangleMesh welded(const TriangleMesh& soup, const Vector3d& low, double weld_m) {
+  std::vector<std::int32_t> corners;
+  for (const Triangle& t : soup.triangles) corners.insert(corners.end(), t.begin(), t.end());
+  std::sort(corners.begin(), corners.end());
+  corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
+  using Cell = std::array<long long, 3>;
+  std::vector<std::pair<Cell, std::int32_t>> order;
+  for (const auto v : corners) {
+    const Vector3d p = (soup.vertices[static_cast<std::size_t>(v)] - low) / weld_m;
+    order.push_back({Cell{std::llround(p.x()), std::llround(p.y()), std::llround(p.z())}, v});
+  }
+  std::sort(order.begin(), order.end());
   TriangleMesh mesh;
-  std::vector<std::int32_t> place(soup.vertices.size());
+  std::vector<std::int32_t> place(soup.vertices.size(), -1);
   for (std::size_t k = 0; k < order.size(); ++k) {
-    if (k == 0 || cell(order[k]) != cell(order[k - 1])) mesh.vertices.push_back(soup.vertices[order[k]]);
-    place[order[k]] = static_cast<std::int32_t>(mesh.vertices.size()) - 1;
+    if (k == 0 || order[k].first != order[k - 1].first) mesh.vertices.push_back(soup.vertices[static_cast<std::size_t>(order[k].second)]);
+    place[static_cast<std::size_t>(order[k].second)] = static_cast<std::int32_t>(mesh.vertices.size()) - 1;
   }
   for (const Triangle& t : soup.triangles) {
     const Triangle moved{place[static_cast<std::size_t>(t[0])], place[static_cast<std::size_t>(t[1])], place[static_cast<std::size_t>(t[2])]};
@@ -82,7 +86,7 @@ Result<TriangleMesh> close_surface(const TriangleMesh& soup, const CloseSurfaceO
     for (const auto v : t) box.include(soup.vertices[static_cast<std::size_t>(v)]);
   const double longest = box.size().maxCoeff();
   if (!(longest > 0) || !std::isfinite(longest)) return failure(ErrorCode::kDegenerateGeometry, "longest side = " + std::to_string(longest) + " m, expected above 0");
-  TriangleMesh mesh = welded(soup, kWeldShare * longest);
+  TriangleMesh mesh = welded(soup, box.low, kWeldShare * longest);
   if (options.as_is && is_sound(mesh) && std::abs(signed_volume(mesh)) > 0) {
     if (signed_volume(mesh) < 0)
       for (Triangle& t : mesh.triangles) std::swap(t[1], t[2]);

@@ -17,10 +17,11 @@ using Eigen::Vector3d;
 constexpr double kSplit = 1.4, kLongest = 2.0;  ///< Longest edges before and after decimation, in edges of an even mesh with as many vertices.
 constexpr int kTries = 8;                       ///< With what crossed left as fine as it was.
 constexpr int kSplitRounds = 12;
+constexpr std::size_t kMostTriangles = 50'000;  ///< Needles are not split beyond.
 
 /// Halves edges longer than the bound; the surface stays where it is.
 TriangleMesh with_short_edges(TriangleMesh mesh, double longest) {
-  for (int round = 0; round < kSplitRounds; ++round) {
+  for (int round = 0; round < kSplitRounds && mesh.triangles.size() < kMostTriangles; ++round) {
     std::map<std::pair<std::int32_t, std::int32_t>, std::int32_t> middles;
     const auto middle = [&](std::int32_t a, std::int32_t b) -> std::int32_t {
       const Vector3d p = mesh.vertices[static_cast<std::size_t>(a)], q = mesh.vertices[static_cast<std::size_t>(b)];

@@ -15,6 +15,7 @@ namespace gfp {
 namespace {
 
 constexpr std::uintmax_t kMaxTableBytes = 16U << 20U;
+constexpr std::size_t kMostComponents = 2000;  // of which every two are compared
 constexpr double kWeld_m = 1e-5;
 constexpr double kMaxSize_m = 2.0;  // larger things do not stand on a table
 
@@ -159,9 +160,10 @@ std::vector<TriangleMesh> split_groups(const TriangleMesh& mesh) {
   std::map<std::int32_t, Bounds> boxes;  // per component
   for (const Triangle& t : mesh.triangles)
     for (const std::int32_t corner : t) boxes[root_of(parent, vertex(corner))].include(mesh.vertices[static_cast<std::size_t>(corner)]);
-  for (const auto& [a, box_a] : boxes)
-    for (const auto& [b, box_b] : boxes)
-      if (a < b && (box_a.low.array() <= box_b.high.array()).all() && (box_b.low.array() <= box_a.high.array()).all()) join(a, b);
+  const bool soup = boxes.size() > kMostComponents;  // one thing, whatever its parts touch
+  for (auto a = boxes.begin(); a != boxes.end(); ++a)
+    for (auto b = soup ? boxes.begin() : a; b != boxes.end() && (!soup || b == boxes.begin()); ++b)
+      if (soup || ((a->second.low.array() <= b->second.high.array()).all() && (b->second.low.array() <= a->second.high.array()).all())) join(a->first, b->first);
 
   std::map<std::int32_t, TriangleMesh> groups;
   std::vector<std::int32_t> place(mesh.vertices.size(), -1);  // of a welded vertex in its group's mesh

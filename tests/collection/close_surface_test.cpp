@@ -96,6 +96,52 @@ TEST(CloseSurface, TakesASoundSurfaceAsItIs) {
   EXPECT_LT(farthest(*closed, torus), 1e-9);
 }
 
+// Triangles missing, doubled, turned around and torn apart, vertices thrown far off: a sound surface, or a reason.
+TEST(CloseSurface, DamageGivesASoundSurfaceOrAReason) {
+  int closed_ones = 0;
+  for (std::uint64_t seed = 0; seed < 30; ++seed) {
+    Random random(seed);
+    TriangleMesh mesh = seed % 2 == 0 ? test::torus(0.1, 0.03) : test::sphere(0.1, 24, 12);
+    for (int damage = 1 + random.below(40); damage > 0; --damage) {
+      const auto t = static_cast<std::size_t>(random.below(static_cast<int>(mesh.triangles.size())));
+      const auto v = static_cast<std::size_t>(random.below(static_cast<int>(mesh.vertices.size())));
+      switch (random.below(6)) {
+        case 0: mesh.triangles.erase(mesh.triangles.begin() + static_cast<std::ptrdiff_t>(t)); break;
+        case 1: mesh.triangles.push_back(mesh.triangles[t]); break;
+        case 2: std::swap(mesh.triangles[t][0], mesh.triangles[t][1]); break;
+        case 3: mesh.triangles[t][0] = static_cast<std::int32_t>(v); break;
+        case 4: mesh.vertices[v] *= random.uniform(-1, 2); break;
+        default: mesh.vertices.emplace_back(1e9, -1e9, 1e12);  // used by nobody
+      }
+    }
+    const auto closed = close_surface(mesh, {.voxels = 24, .vertices = 400});
+    if (!closed) continue;
+    ++closed_ones;
+    EXPECT_TRUE(examine_topology(*closed).closed) << seed;
+    EXPECT_EQ(count_self_intersections(*closed), 0) << seed;
+    EXPECT_GT(signed_volume(*closed), 0) << seed;
+  }
+  EXPECT_GT(closed_ones, 25);
+}
+
+TEST(CloseSurface, NeedlesFarThingsAndDustEndSoon) {
+  TriangleMesh needle = test::box({1e-6, 1e-6, 1.0}), far = test::sphere(0.05);
+  for (auto& v : far.vertices) v += Eigen::Vector3d(1e3, -1e3, 1e3);
+  EXPECT_TRUE(close_surface(far));
+  const auto closed_needle = close_surface(needle);
+  EXPECT_TRUE(!closed_needle || examine_topology(*closed_needle).closed);
+  TriangleMesh dust;
+  Random random(3);
+  for (int k = 0; k < 20'000; ++k) {
+    const Eigen::Vector3d p(random.uniform(0, 0.3), random.uniform(0, 0.3), random.uniform(0, 0.3));
+    const auto first = static_cast<std::int32_t>(dust.vertices.size());
+    for (int axis = 0; axis < 3; ++axis) dust.vertices.push_back(p + 0.002 * Eigen::Vector3d::Unit(axis));
+    dust.triangles.push_back({first, first + 1, first + 2});
+  }
+  const auto closed_dust = close_surface(dust, {.voxels = 24, .vertices = 1000});
+  EXPECT_TRUE(!closed_dust || count_self_intersections(*closed_dust) == 0);
+}
+
 TEST(CloseSurface, SaysWhatIsNoBody) {
   EXPECT_EQ(close_surface({}).error().code, ErrorCode::kDegenerateGeometry);
   TriangleMesh point;
