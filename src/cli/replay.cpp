@@ -45,6 +45,9 @@ DaemonParts parts_of(const ReplayArguments& arguments, const PrimitiveLibrary& l
             progress->objects += result.scene.objects.size();
             ++progress->frames;
             return result;
+          },
+          [&library](const Scene& scene, const SceneMemory& memory, const PipelineOptions& options, ShadowMemory& kept) {
+            return shadow_scene(scene, memory, library, options, kept);
           }};
 }
 

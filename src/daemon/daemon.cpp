@@ -38,6 +38,7 @@ Result<std::unique_ptr<Daemon>> Daemon::start(DaemonOptions options, DaemonParts
     self.publisher_ = std::move(*publisher);
   }
   if (options.recording.mode != "off") self.recorder_ = std::make_unique<Recorder>(options.recording, hand_over(options));
+  self.shadow_ = std::make_unique<Shadow>(self.parts_.shadow, *self.publisher_);
   self.pipeline_ = std::jthread([&self](const std::stop_token& stop) { self.run_pipeline(stop); });
   auto sources = daemon->make_sources(options);
   if (!sources) return tl::unexpected(sources.error());
@@ -123,6 +124,7 @@ void Daemon::run_pipeline(const std::stop_token& stop) {
       const auto scene = std::make_shared<const Scene>(std::move(result.scene));
       if (recorder_) recorder_->put(scene);
       publisher_->put(scene);
+      if (!options->shadow.empty()) shadow_->put(scene, memory, options);
       MutexLock lock(mutex_);
       last_scenes_[scene->sensor] = scene;
     } catch (const std::exception& error) {  // memory exhausted, or a bug: it costs this frame
@@ -161,6 +163,7 @@ void Daemon::stop() {
   sensors.clear();
   if (pipeline_.joinable()) pipeline_.join();
   recorder_.reset();  // closes the file
+  shadow_.reset();
   if (publisher_) publisher_->stop();  // before the desk, which it may still hand requests to
 }
 

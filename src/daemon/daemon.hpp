@@ -11,6 +11,7 @@
 #include "daemon/frame_inbox.hpp"
 #include "daemon/recorder.hpp"
 #include "daemon/sensor_worker.hpp"
+#include "daemon/shadow.hpp"
 #include "gfp/pipeline/process_frame.hpp"
 #include "publish/publisher.hpp"
 
@@ -20,12 +21,14 @@ namespace gfp {
 struct DaemonParts {
   std::function<Result<std::unique_ptr<FrameSource>>(const SensorConfig&)> make_source;
   std::function<PipelineResult(const Frame&, const SceneMemory&, const PipelineOptions&)> process;
+  Shadow::Fit shadow;
 };
 
 /// gfpd without its command line: sensors, one pipeline, one publisher, and a recorder where one is configured.
 ///
 ///     SensorWorker (2 threads each) --FrameInbox--> pipeline thread (oneTBB arena) --> Publisher (1 thread)
-///               `------------------ frames, scenes -----------------`---------------> Recorder (1 thread)
+///               `------------------ frames, scenes -----------------|---------------> Recorder (1 thread)
+///                                                                   `--> Shadow (1 thread, low priority) --> Publisher
 ///                                                              control requests <--> ControlDesk (1 thread)
 ///
 /// start(), reload(), tick() and stop() belong to one thread, the one that waits for signals.
@@ -78,6 +81,7 @@ class Daemon {
   Sensors sensors_ GFP_GUARDED_BY(mutex_);
   std::unique_ptr<Publisher> publisher_;
   std::unique_ptr<ControlDesk> desk_;
+  std::unique_ptr<Shadow> shadow_;
   std::atomic<Nanoseconds> working_since_{};  ///< Monotonic; 0: the pipeline waits for a frame.
   std::jthread pipeline_;  ///< Last: it uses all of the above.
 };

@@ -51,6 +51,10 @@ gfp::DaemonParts parts(const LiveLibrary& live) {
   return {gfp::make_source, [&live](const gfp::Frame& frame, const gfp::SceneMemory& memory, const gfp::PipelineOptions& options) {
             const auto library = live.load();
             return gfp::process_frame(frame, memory, *library, options);
+          },
+          [&live](const gfp::Scene& scene, const gfp::SceneMemory& memory, const gfp::PipelineOptions& options, gfp::ShadowMemory& kept) {
+            const auto library = live.load();
+            return gfp::shadow_scene(scene, memory, *library, options, kept);
           }};
 }
 

@@ -46,6 +46,8 @@ Result<void> validate(const PipelineOptions& options) {
   if (std::find(profiles.begin(), profiles.end(), options.profile) == profiles.end())
     return failure(ErrorCode::kNotFound, "profile = " + options.profile + ", expected one of " + joined(profiles));
   if (const auto method = find_method(options.method); !method) return tl::unexpected(method.error());
+  if (const auto shadow = find_method(options.shadow); !options.shadow.empty() && !shadow)
+    return failure(shadow.error().code, "shadow: " + shadow.error().what);
   return {};
 }
 

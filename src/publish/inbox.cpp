@@ -48,6 +48,16 @@ void Inbox::put(ScenePtr scene) {
   wake();
 }
 
+void Inbox::put_shadow(ScenePtr scene, std::uint64_t dropped) {
+  {
+    MutexLock lock(mutex_);
+    const std::string name = scene->sensor;
+    replace(content_.shadows, name, std::move(scene));
+    content_.shadows[name].dropped += dropped;
+  }
+  wake();
+}
+
 void Inbox::put(v1::SensorStatus status) {
   {
     MutexLock lock(mutex_);

@@ -32,6 +32,7 @@ class Inbox {
   struct Content {
     std::map<std::string, Latest<FramePtr>> frames;  ///< By sensor.
     std::map<std::string, Latest<ScenePtr>> scenes;
+    std::map<std::string, Latest<ScenePtr>> shadows;
     std::map<std::string, std::set<std::uint64_t>> lost;  ///< Ids that scenes said were lost, replaced scenes among them.
     std::map<std::string, v1::SensorStatus> statuses;
     std::deque<v1::LogRecord> log;
@@ -45,6 +46,7 @@ class Inbox {
 
   void put(FramePtr frame);
   void put(ScenePtr scene);
+  void put_shadow(ScenePtr scene, std::uint64_t dropped);  ///< `dropped`: scenes that the method did not get to since its last one.
   void put(v1::SensorStatus status);
   void put(v1::LogRecord record);
   void put(PeerReply reply);  ///< As many wait at most as whoever makes them has taken on.

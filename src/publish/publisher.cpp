@@ -106,6 +106,7 @@ void Publisher::send_content() {
   Inbox::Content content = inbox_.take();
   for (const auto& [name, frame] : content.frames) send_frame(frame);
   for (const auto& [name, scene] : content.scenes) take_scene(scene, content.lost[name]);
+  for (const auto& [name, shadow] : content.shadows) send_shadow(shadow);
   for (auto& [name, status] : content.statuses) {
     const std::string topic = wire::status_topic(name);
     if (state_.demand().wants(topic)) state_.send(topic, status, {});
@@ -166,6 +167,16 @@ void Publisher::send_scene(const Scene& scene, std::uint64_t dropped, const std:
   for (const SceneObject& object : scene.objects)
     send_object(object.id, [&](v1::ObjectUpdate& message) { wire::fill(scene, object, coding_, message); });
   for (const std::uint64_t id : lost) send_object(id, [&](v1::ObjectUpdate& message) { wire::fill_lost(scene, id, message); });
+}
+
+void Publisher::send_shadow(const Latest<ScenePtr>& shadow) {
+  const Scene& scene = *shadow.value;
+  const std::string topic = wire::shadow_topic(scene.profile);
+  if (!state_.demand().wants(topic)) return;
+  for (const SceneObject& object : scene.objects) send_topology(object.model);
+  v1::Scene message;
+  wire::fill(scene, coding_, message);
+  state_.send(topic, message, scene.stamps, shadow.dropped);
 }
 
 void Publisher::repeat_scenes(Nanoseconds not_since) {

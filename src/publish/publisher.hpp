@@ -47,6 +47,9 @@ class Publisher {
 
   void put(PeerReply reply) { inbox_.put(std::move(reply)); }
 
+  /// What another method made of a frame (`profile` is its name): goes to /gfp/shadow/<method>/, not to the mirror.
+  void put_shadow(ScenePtr scene, std::uint64_t dropped) { inbox_.put_shadow(std::move(scene), dropped); }
+
   /// Sends what waits and the daemon's last status, then closes the sockets (up to half a second for slow subscribers).
   void stop();
 
@@ -64,6 +67,7 @@ class Publisher {
   void send_frame(const Latest<FramePtr>& frame);
   void take_scene(const Latest<ScenePtr>& scene, const std::set<std::uint64_t>& lost);
   void send_scene(const Scene& scene, std::uint64_t dropped, const std::set<std::uint64_t>& lost);
+  void send_shadow(const Latest<ScenePtr>& shadow);
   void repeat_scenes(Nanoseconds not_since);
   void serve_late_joiners();
   void send_topology(const FittedModel& model);

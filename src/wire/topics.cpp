@@ -10,6 +10,7 @@ namespace gfp::wire {
 std::string object_topic(std::uint64_t id) { return fmt::format("{}{}/", kObjectsPrefix, id); }
 std::string mesh_topic(std::uint64_t topology_hash) { return fmt::format("{}{:016x}/", kMeshPrefix, topology_hash); }
 std::string sensor_topic(std::string_view sensor, std::string_view stream) { return fmt::format("{}{}/{}/", kSensorPrefix, sensor, stream); }
+std::string shadow_topic(std::string_view method) { return fmt::format("{}{}/", kShadowPrefix, method); }
 std::string status_topic(std::string_view name) { return fmt::format("{}{}/", kStatusPrefix, name); }
 
 std::string_view endpoint_of(std::string_view topic) { return topic.starts_with(kSensorPrefix) ? "sensor" : "state"; }

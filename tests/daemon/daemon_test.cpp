@@ -67,6 +67,13 @@ struct Bench {
               result.scene.stamps = frame.stamps;
               ++result.memory.frames;
               return result;
+            },
+            [this](const Scene& scene, const SceneMemory&, const PipelineOptions& pipeline, ShadowMemory& kept) {
+              if (throws) throw std::runtime_error("a bug in a shadow");
+              kept.method = pipeline.shadow;
+              Scene shadow = scene;
+              shadow.profile = pipeline.shadow;
+              return shadow;
             }};
   }
   ControlOptions control() const { return {options.publish.control_endpoints[0], 20s, {}}; }
@@ -95,6 +102,26 @@ TEST(Daemon, FramesBecomeScenesForASubscriber) {
   ASSERT_TRUE(eventually([&] { return (scene = scenes->next(100ms)) && has_all_meshes(*scene); }));
   EXPECT_EQ(scene->sensor, "front");
   EXPECT_EQ(scene->objects.size(), 2U);
+}
+
+// It comes and goes with the configuration, under a topic of its own.
+TEST(Daemon, AShadowIsPublishedUnderItsMethod) {
+  Bench bench;
+  auto daemon = Daemon::start(bench.options, bench.parts(), 7);
+  ASSERT_TRUE(daemon);
+  auto subscriber = Subscriber::connect({"/gfp/shadow/superquadric/"}, bench.subscriber());
+  ASSERT_TRUE(subscriber);
+  EXPECT_TRUE(eventually([&] { return bench.processed > 20; }));
+  EXPECT_FALSE(subscriber->receive(0ms));  // none is configured
+  bench.options.pipeline.shadow = "superquadric";
+  ASSERT_TRUE((*daemon)->reload(bench.options));
+  const auto message = subscriber->receive(20s);
+  ASSERT_TRUE(message);
+  EXPECT_EQ(message->topic, "/gfp/shadow/superquadric/");
+  v1::Scene shadow;
+  ASSERT_TRUE(shadow.ParseFromArray(message->payload.data(), static_cast<int>(message->payload.size())));
+  EXPECT_EQ(shadow.profile(), "superquadric");
+  EXPECT_EQ(shadow.objects_size(), 2);
 }
 
 TEST(Daemon, WithoutASensorOrWithABadOneItDoesNotStart) {

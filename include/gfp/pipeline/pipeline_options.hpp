@@ -38,6 +38,7 @@ void visit_fields(FitBudgetOptions& o, Visitor&& field) {
 struct PipelineOptions {
   std::string profile = "robust";
   std::string method = "gfp_robust";
+  std::string shadow;  ///< A method that gfpd runs beside it, at low priority, and publishes under /gfp/shadow/; empty: none.
   DepthToCloudOptions cloud;
   EstimateNormalsOptions normals;
   SegmentationOptions segmentation;
@@ -55,6 +56,7 @@ template <class Visitor>
 void visit_fields(PipelineOptions& o, Visitor&& field) {
   field("profile", o.profile);
   field("method", o.method);
+  field("shadow", o.shadow);
   field.section("cloud", o.cloud);
   field.section("normals", o.normals);
   field.section("segmentation", o.segmentation);
@@ -72,7 +74,7 @@ void visit_fields(PipelineOptions& o, Visitor&& field) {
 std::vector<std::string> profile_names();
 std::vector<std::string> method_names();
 
-/// Errors: kNotFound, naming an unknown profile or method and the known ones.
+/// Errors: kNotFound, naming an unknown profile, method or shadow and the known ones.
 Result<void> validate(const PipelineOptions& options);
 
 }  // namespace gfp
