@@ -40,10 +40,13 @@ std::string class_section(const json& record) {
     html += "<p><b class=bad>refused:</b> " + escaped(record.at("reason")) + "</p>";
   } else {
     const json& primitive = record.at("primitive");
-    html += fmt::format("<p>{} points ({} control), genus {}, {}, {} modes, {} of {} members (template: {}), {:.1f} s, typing {:.1f} ms</p><div class=row>", primitive.at("vertices").get<int>(),
+    html += fmt::format("<p>{} points ({} control), genus {}, {}, {} modes, {} of {} members (template: {}), {:.1f} s, typing {:.1f} ms</p>", primitive.at("vertices").get<int>(),
                         primitive.at("control_points").get<int>(), primitive.at("genus").get<int>(), primitive.at("hollow").get<bool>() ? "hollow" : "solid",
                         primitive.at("modes").get<int>(), primitive.at("provenance").at("members").get<int>(), record.at("members").size(), escaped(record.at("template")), record.at("seconds").get<double>(),
                         record.at("typing_ms").get<double>());
+    if (const double moved = record.at("mean_moved").get<double>(); moved > 1e-6)
+      html += fmt::format("<p>The plain average crosses itself: the mean was kept from it by at most {:.3f} of its size.</p>", moved);
+    html += "<div class=row>";
     html += figure(name + "/symmetry.png", "Symmetry: " + escaped(symmetry_text(symmetry_of(primitive.at("symmetry")))) + ". Red: axis; green: mirror planes.");
     html += "</div><figure><img loading=lazy src=\"" + escaped(name) + "/sheet.png\"><figcaption>Mean, control points (yellow), and each mode at -2, 0 and +2 sigma.</figcaption></figure>";
   }

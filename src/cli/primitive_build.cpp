@@ -128,7 +128,7 @@ class ClassBuild {
         },
         stop.get_token(), &members);
     if (stop.stop_requested()) return failure(ErrorCode::kTimeout, "interrupted");
-    json record{{"class", models_.name}, {"key", key_}, {"skipped", false}, {"reason", nullptr}, {"primitive", nullptr}, {"file", nullptr}, {"template", nullptr}, {"typing_ms", 0.0}, {"members", json::array()}};
+    json record{{"class", models_.name}, {"key", key_}, {"skipped", false}, {"reason", nullptr}, {"primitive", nullptr}, {"file", nullptr}, {"template", nullptr}, {"mean_moved", 0.0}, {"typing_ms", 0.0}, {"members", json::array()}};
     for (const MemberReport& member : members) record["members"].push_back(member_json(member));
     std::error_code ignored;
     fs::create_directories(report_, ignored);
@@ -136,6 +136,7 @@ class ClassBuild {
       built->primitive.training_views = train_views(built->primitive);
       if (const auto before = wire::read_primitive(file_)) carry_manual_types(*before, built->primitive);
       record["primitive"] = primitive_json(built->primitive);
+      record["mean_moved"] = built->mean_moved;
       record["template"] = built->members[built->template_member].name;
       record["file"] = file_.filename().string();
       record["typing_ms"] = typing_ms(built->primitive);

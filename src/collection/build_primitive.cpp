@@ -289,17 +289,14 @@ void add_symmetric_copies(const Trial& trial, const Symmetry& symmetry, const Bu
   for (auto& shape : shapes) members.shapes.push_back(std::move(shape));
 }
 
-/// Where the template stands on the ground, every member does: the middle of those vertices is its origin.
-void put_on_base(const TriangleMesh& shape, ClassMembers& members) {
-  const Bounds box = bounds(shape.vertices);
-  for (auto& points : members.shapes) {
-    Bounds base;
-    for (std::size_t i = 0; i < points.size(); ++i)
-      if (shape.vertices[i].z() <= box.low.z() + kBaseShare * box.size().z()) base.include(points[i]);
-    const Bounds whole = bounds(points);
-    for (Vector3d& p : points) p -= Vector3d(base.centre().x(), base.centre().y(), whole.low.z());
-    members.sizes_m.push_back(whole.size());
-  }
+/// Where the template stands on the ground, every member does: the middle of those vertices is its origin. Returns the size.
+Vector3d put_on_base(const TriangleMesh& shape, std::vector<Vector3d>& points) {
+  const Bounds box = bounds(shape.vertices), whole = bounds(points);
+  Bounds base;
+  for (std::size_t i = 0; i < points.size(); ++i)
+    if (shape.vertices[i].z() <= box.low.z() + kBaseShare * box.size().z()) base.include(points[i]);
+  for (Vector3d& p : points) p -= Vector3d(base.centre().x(), base.centre().y(), whole.low.z());
+  return whole.size();
 }
 
 TriangleMesh mean_of(const ClassMembers& members) {
@@ -340,13 +337,16 @@ Result<BuiltPrimitive> build_primitive(const std::string& name, const std::vecto
   if (kept.shapes.size() < std::max<std::size_t>(1, least)) return refuse(too_few(name, kept.shapes.size(), built.members));
 
   const std::size_t count = kept.shapes.size();
-  kept.sound = trial->shape.vertices;
-  kept.sound_size_m = bounds(trial->shape.vertices).size();
   const Symmetry symmetry = find_symmetry(mean_of(kept));
   add_symmetric_copies(*trial, symmetry, options, kept);
   if (stop.stop_requested()) return refuse(kStopped);
-  put_on_base(trial->shape, kept);
+  for (auto& points : kept.shapes) kept.sizes_m.push_back(put_on_base(trial->shape, points));
+  kept.sound = trial->shape.vertices;
+  kept.sound_size_m = put_on_base(trial->shape, kept.sound);
   const TriangleMesh mean = mean_of(kept);
+  std::vector<Vector3d> canonical_mean(mean.vertices.size(), Vector3d::Zero());
+  for (std::size_t m = 0; m < kept.shapes.size(); ++m)
+    for (std::size_t i = 0; i < canonical_mean.size(); ++i) canonical_mean[i] += kept.shapes[m][i].cwiseQuotient(kept.sizes_m[m]) / static_cast<double>(kept.shapes.size());
   Cavity cavity = find_cavity(mean);
   kept.parts = std::move(cavity.parts);
   kept.filled_triangles = std::move(cavity.filled_triangles);
@@ -361,6 +361,7 @@ Result<BuiltPrimitive> build_primitive(const std::string& name, const std::vecto
                                                 .doubt_members = kDoubtMembers,
                                                 .provenance = {"collection " + name, "as its members", static_cast<int>(count)}});
   built.template_member = members[trial->member].model;
+  for (std::size_t i = 0; i < mean.vertices.size(); ++i) built.mean_moved = std::max(built.mean_moved, (canonical_mean[i] - built.primitive.mean[i]).norm());
   steps.finish();
   if (members_out) *members_out = built.members;
   return built;

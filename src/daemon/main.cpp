@@ -3,10 +3,10 @@
 #include <csignal>
 
 #include <CLI/CLI.hpp>
-#include <atomic>
 #include <iostream>
 #include <memory>
 #include <random>
+#include <utility>
 
 #include "app/builtin_library.hpp"
 #include "app/driver_channel.hpp"
@@ -15,6 +15,7 @@
 #include "daemon/daemon.hpp"
 #include "daemon/logging.hpp"
 #include "daemon/service_manager.hpp"
+#include "gfp/core/mutex.hpp"
 #include "gfp/core/version.hpp"
 #include "view/access.hpp"
 #include "view/view.hpp"
@@ -44,8 +45,24 @@ std::uint64_t new_session() {
   return (static_cast<std::uint64_t>(device()) << 32) | device();
 }
 
-/// The primitives that frames are processed with: those of the last good configuration, from the next frame on.
-using LiveLibrary = std::atomic<std::shared_ptr<const gfp::PrimitiveLibrary>>;
+/// The primitives that frames are processed with: those of the last good configuration, from the next frame on. Safe from any thread.
+class LiveLibrary {
+ public:
+  explicit LiveLibrary(gfp::PrimitiveLibrary library) { store(std::move(library)); }
+  void store(gfp::PrimitiveLibrary library) {
+    auto shared = std::make_shared<const gfp::PrimitiveLibrary>(std::move(library));
+    const gfp::MutexLock lock(mutex_);
+    library_ = std::move(shared);
+  }
+  std::shared_ptr<const gfp::PrimitiveLibrary> load() const {
+    const gfp::MutexLock lock(mutex_);
+    return library_;
+  }
+
+ private:
+  mutable gfp::Mutex mutex_;
+  std::shared_ptr<const gfp::PrimitiveLibrary> library_ GFP_GUARDED_BY(mutex_);  ///< Shared with the frame under way.
+};
 
 gfp::DaemonParts parts(const LiveLibrary& live) {
   return {gfp::make_source, [&live](const gfp::Frame& frame, const gfp::SceneMemory& memory, const gfp::PipelineOptions& options) {
@@ -65,7 +82,7 @@ void reload(gfp::Daemon& daemon, LiveLibrary& library, const Arguments& argument
   auto primitives = gfp::library_of_configuration(options->primitives, options->upsampling, arguments.config);
   if (!primitives) return spdlog::error("reload: the old configuration stays: {}", primitives.error().what);
   if (const auto done = daemon.reload(*options); !done) return spdlog::error("reload: the old configuration stays: {}", done.error().what);
-  library.store(std::make_shared<const gfp::PrimitiveLibrary>(std::move(*primitives)));
+  library.store(std::move(*primitives));
   spdlog::info("reloaded {}", arguments.config);
 }
 
@@ -121,7 +138,7 @@ int run(const Arguments& arguments) {
     std::cerr << "gfpd: " << primitives.error().what << "\n";
     return gfp::kExitConfig;
   }
-  LiveLibrary library(std::make_shared<const gfp::PrimitiveLibrary>(std::move(*primitives)));  // it outlives the daemon, whose pipeline reads it
+  LiveLibrary library(std::move(*primitives));  // it outlives the daemon, whose pipeline reads it
   const std::uint64_t session = new_session();
   std::unique_ptr<gfp::View> view;  // it outlives the daemon, whose threads put into it
   auto daemon = gfp::Daemon::start(*options, parts(library), session);

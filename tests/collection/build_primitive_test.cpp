@@ -105,24 +105,28 @@ TEST(BuildPrimitive, IsTheSameAtAnyThreadCount) {
   for (std::size_t m = 0; m < models.size(); ++m) EXPECT_EQ(first->members[m].residual, second->members[m].residual);
 }
 
-// Cups with walls of half a millimetre, of which the average's rims would cross: the mean is sound, and so are its modes.
-TEST(BuildPrimitive, MendsAMeanThatCrossesItself) {
-  std::vector<CollectionModel> models;
-  for (int k = 0; k < 4; ++k) {
-    const double radius = 0.03 + 0.01 * (k % 2), flare = 0.02 * (k / 2), wall = 0.0005, height = 0.09;
-    std::vector<Eigen::Vector2d> profile;
-    for (int i = 0; i <= 12; ++i) profile.emplace_back(radius + flare * i * i / 144, height * i / 12);
-    for (int i = 12; i >= 1; --i) profile.emplace_back(radius + flare * i * i / 144 - wall, height * i / 12 + (i == 1 ? wall - height / 12 : 0.0));
-    models.push_back({"cup " + std::to_string(k), test::revolve(profile, 40)});
-  }
-  const auto built = build_primitive("cup", models, {.max_residual = 0.1});
-  ASSERT_TRUE(built) << built.error().what;
-  expect_sound(built->primitive, 0);
-  for (std::size_t k = 0; k < built->primitive.modes.size(); ++k)
+// One sound shape and one so folded that the average with it crosses itself: the mean goes as far as it can, and so do its modes.
+TEST(PrimitiveOfMembers, AMeanThatCrossesItselfIsKeptOnItsWay) {
+  const TriangleMesh can = test::cylinder(0.03, 0.1, 24, 12);
+  ClassMembers members;
+  members.triangles = members.filled_triangles = can.triangles;
+  members.parts.assign(can.vertices.size(), Part::kBody);
+  members.shapes.assign(2, can.vertices);
+  members.sizes_m.assign(2, bounds(can.vertices).size());
+  members.sound = members.shapes[0];
+  members.sound_size_m = members.sizes_m[0];
+  std::vector<Eigen::Vector3d>& folded = members.shapes[1];  // one vertex of the wall pulled through the far side
+  folded[3 * 24].x() -= 0.2;
+  const Primitive primitive = primitive_of_members(members, {.name = "can", .class_name = "can", .aliases = {}, .symmetry = {}, .provenance = {}});
+  std::vector<Eigen::Vector3d> plain = primitive.mean;
+  for (std::size_t i = 0; i < plain.size(); ++i) plain[i] = 0.5 * (members.shapes[0][i].cwiseQuotient(members.sizes_m[0]) + folded[i].cwiseQuotient(members.sizes_m[1]));
+  ASSERT_GT(count_self_intersections({plain, can.triangles}), 0) << "what the test is about";
+  EXPECT_EQ(count_self_intersections({primitive.mean, can.triangles}), 0);
+  for (std::size_t k = 0; k < primitive.modes.size(); ++k)
     for (const double sigma : {-2.0, 2.0}) {
       std::vector<double> modes(k + 1, 0.0);
       modes[k] = sigma;
-      EXPECT_EQ(count_self_intersections({shape(built->primitive, built->primitive.typical_size_m(), modes), built->primitive.topology->triangles}), 0) << k << ' ' << sigma;
+      EXPECT_EQ(count_self_intersections({shape(primitive, primitive.typical_size_m(), modes), can.triangles}), 0) << k << ' ' << sigma;
     }
 }
 

@@ -41,6 +41,7 @@ struct BuiltPrimitive {
   Primitive primitive;
   std::vector<MemberReport> members;  ///< As given.
   std::size_t template_member = 0;    ///< The one that was morphed onto the others.
+  double mean_moved = 0;              ///< How far the mean was kept from the plain average where that crosses itself: at most, canonical units.
 };
 
 /// A generic primitive from models of one class (P5, P6): each is made one closed surface; those of another genus than most are left out;
