@@ -11,6 +11,10 @@ namespace {
 constexpr double kFreedomPenalty = 0.5 * 4.1;  ///< Half log of kScorePixels for every free parameter (BIC).
 constexpr double kDescriptorTrust = 0.3;  ///< Share of the descriptors' log likelihood that is kept: they are correlated, and the fit saw more.
 
+// Calibrated on 606 views of held-out family members: the mean probability of what was chosen is .90, and so is the share that was right.
+constexpr double kTemperature = 3.0;      ///< Log odds are that many times too sure of themselves.
+constexpr double kNotAmongThem = 0.08;    ///< How often the true class is none of the candidates.
+
 constexpr int kUnknownFreedoms = 5;       ///< Of a superquadric: sizes and exponents; the pose is everybody's.
 constexpr double kLeastCost = 0.2;        ///< Of the best fits of real objects: noise, ragged edges.
 constexpr double kNegligibleOdds = 3.0;   ///< Log odds beyond which an alternative does not matter.
@@ -37,13 +41,13 @@ ObjectEstimate select_one(const ObjectView& view, std::vector<Candidate> candida
   }
   double total = 0;
   for (std::size_t k = 0; k < candidates.size(); ++k) {
-    const double odds = std::exp(evidences[k] - evidences[best]);
+    const double odds = std::exp((evidences[k] - evidences[best]) / kTemperature);
     auto& of_class = estimate.class_probabilities[candidates[k].model.class_name];
     total += std::max(0.0, odds - of_class);
     of_class = std::max(of_class, odds);  // a class is as probable as its best placement
   }
-  for (auto& [name, probability] : estimate.class_probabilities) probability /= total;
-  estimate.class_probabilities.try_emplace("unknown", 0.0);
+  for (auto& [name, probability] : estimate.class_probabilities) probability *= (1 - kNotAmongThem) / total;
+  estimate.class_probabilities["unknown"] += kNotAmongThem;
   estimate.model = std::move(candidates[best].model);
   return estimate;
 }

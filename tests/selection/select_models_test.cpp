@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "support/box_model.hpp"
 
 namespace gfp {
@@ -31,6 +33,16 @@ TEST(SelectModels, TheBetterFitWinsAndTheProbabilitiesSumToOne) {
   EXPECT_NEAR(sum, 1, 1e-12);
   EXPECT_TRUE(estimate.class_probabilities.contains("unknown"));
   EXPECT_GT(estimate.class_probabilities.at("cup"), 0.05);
+}
+
+// Nothing is certain: even a single candidate may be none of the truth.
+TEST(SelectModels, ProbabilitiesAreNoSurerThanTheyAreRight) {
+  EXPECT_NEAR(decide({of_class("mug", 0.3)}).class_probabilities.at("mug"), 0.92, 1e-12);
+  EXPECT_NEAR(decide({of_class("mug", 0.3)}).class_probabilities.at("unknown"), 0.08, 1e-12);
+  const auto even = decide({of_class("mug", 0.3), of_class("cup", 0.3)}).class_probabilities, worse = decide({of_class("mug", 0.3), of_class("cup", 0.4)}).class_probabilities;
+  EXPECT_NEAR(even.at("mug"), even.at("cup"), 1e-12);
+  EXPECT_GT(worse.at("mug"), even.at("mug"));
+  EXPECT_NEAR(worse.at("cup") / worse.at("mug"), std::exp(-0.1 * 60 / 3.0), 1e-9);  // 60 readings count, log odds are divided by 3
 }
 
 TEST(SelectModels, AnUnlikelyShapeOfAClassPaysForIt) { EXPECT_EQ(decide({of_class("jar", 0.30, 8), of_class("can", 0.35, 1)}).model.class_name, "can"); }
