@@ -16,8 +16,8 @@ std::vector<Candidate> fit_by_class(const ObjectView& view, const PrimitiveLibra
   const auto hypotheses = timings.measure("recognition", [&] { return recognise(view, library, options.recognition); });
   if (hypotheses.empty()) return {};
   const Hypothesis& hypothesis = hypotheses.front();
-  const Placement placement = timings.measure("registration", [&] { return register_paper(view, hypothesis); });
-  return {{timings.measure("modelling", [&] { return model_contour_paper(view, placement, {}, directions); }), hypothesis.log_prior}};
+  const Placement placement = timings.measure("registration", [&] { return register_paper(view, hypothesis, options.paper.registration); });
+  return {{timings.measure("modelling", [&] { return model_contour_paper(view, placement, options.paper.contour, directions); }), hypothesis.log_prior}};
 }
 
 }  // namespace
@@ -30,8 +30,8 @@ std::vector<Candidate> fit_gfp_grid26(const ObjectView& view, const PrimitiveLib
   return fit_by_class(view, library, options, ContourDirections::kGrid26, timings);
 }
 
-std::vector<Candidate> fit_sphere_snake_only(const ObjectView& view, const PrimitiveLibrary&, const PipelineOptions&, StageTimings& timings) {
-  return {{timings.measure("modelling", [&] { return fit_sphere_snake(view); }), 0.0}};
+std::vector<Candidate> fit_sphere_snake_only(const ObjectView& view, const PrimitiveLibrary&, const PipelineOptions& options, StageTimings& timings) {
+  return {{timings.measure("modelling", [&] { return fit_sphere_snake(view, options.paper.contour); }), 0.0}};
 }
 
 std::vector<Candidate> fit_multi_superquadric_only(const ObjectView& view, const PrimitiveLibrary&, const PipelineOptions&, StageTimings& timings) {

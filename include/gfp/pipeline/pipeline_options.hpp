@@ -9,7 +9,9 @@
 #include "gfp/grasp/plan_grasps.hpp"
 #include "gfp/memory/associate.hpp"
 #include "gfp/modelling/model_contour.hpp"
+#include "gfp/modelling/model_contour_paper.hpp"
 #include "gfp/recognition/recognise.hpp"
+#include "gfp/registration/register_paper.hpp"
 #include "gfp/registration/register_primitive.hpp"
 #include "gfp/segmentation/segment_cloud.hpp"
 #include "gfp/selection/select_models.hpp"
@@ -34,6 +36,18 @@ void visit_fields(FitBudgetOptions& o, Visitor&& field) {
   field("shape_cost_slack", o.shape_cost_slack, 0.0, 100.0);
 }
 
+/// Of the methods that the paper is or compares itself with: gfp_paper, gfp_grid26, sphere_snake.
+struct PaperOptions {
+  PaperRegistrationOptions registration;
+  PaperContourOptions contour;
+};
+
+template <class Visitor>
+void visit_fields(PaperOptions& o, Visitor&& field) {
+  field.section("registration", o.registration);
+  field.section("contour", o.contour);
+}
+
 /// Every stage's options: the configuration's `pipeline` section.
 struct PipelineOptions {
   std::string profile = "robust";
@@ -46,6 +60,7 @@ struct PipelineOptions {
   RecognitionOptions recognition;
   RegistrationOptions registration;
   ModellingOptions modelling;
+  PaperOptions paper;
   FitBudgetOptions budget;
   SelectionOptions selection;
   Gripper gripper;
@@ -64,6 +79,7 @@ void visit_fields(PipelineOptions& o, Visitor&& field) {
   field.section("recognition", o.recognition);
   field.section("registration", o.registration);
   field.section("modelling", o.modelling);
+  field.section("paper", o.paper);
   field.section("budget", o.budget);
   field.section("selection", o.selection);
   field.section("gripper", o.gripper);

@@ -1,4 +1,4 @@
-// Another method beside the pipeline's own, on the same views.
+// Methods by name in the whole pipeline: beside each other on the same views, and with their own options.
 #include <gtest/gtest.h>
 
 #include "app/builtin_library.hpp"
@@ -37,6 +37,19 @@ TEST(ShadowScene, SeesTheSameObjectsWithAnotherMethod) {
   options.shadow = "simple_primitive";
   EXPECT_EQ(shadow_scene(result.scene, result.memory, builtin_library(), options, kept).objects[0].model.method, "simple_primitive");
   EXPECT_TRUE(shadow_scene(result.scene, {}, builtin_library(), options, kept).objects.empty());
+}
+
+TEST(Methods, ThePapersOptionsReachItsContour) {
+  const Frame frame = test::table_frame({{0.02, 0.03, {0.08, 0.05, 0.07}, 0.9}});
+  PipelineOptions options;
+  options.method = "sphere_snake";
+  const auto iterations = [&] { return process_frame(frame, {}, builtin_library(), options).scene.objects.at(0).model.iterations; };
+  EXPECT_GT(iterations(), 3);
+  options.paper.contour.max_iterations = 3;
+  EXPECT_EQ(iterations(), 3);
+  options.method = "gfp_paper";
+  options.paper.contour.max_iterations = 0;
+  EXPECT_EQ(iterations(), 0);
 }
 
 }  // namespace
