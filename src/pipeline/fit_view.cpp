@@ -20,6 +20,7 @@ namespace {
 
 constexpr double kContourGain = 0.2;  ///< Cost by which a contour may improve one placement more than another.
 constexpr double kToldOtherwise = -20.0;  ///< Log prior of "none of the classes" beside what it always is, where the class was told.
+constexpr double kExplainsNothing = 2.25;  ///< Half of what an unexplained reading costs: a class that fits as badly is not named.
 constexpr const char* kSuperquadric = "superquadric";
 
 /// The contour is the dear part: only the best placements get one, and those that it may still bring to the front.
@@ -45,7 +46,9 @@ std::vector<Candidate> search(const ObjectView& view, const PrimitiveLibrary& li
   auto candidates = place_and_contour(view, hypotheses, options.budget.max_contours, options, timings);
   if (unknown_may_win(candidates, options.selection)) {
     auto superquadric = timings.measure(kSuperquadric, [&] { return fit_superquadric(view); });
-    candidates.push_back({std::move(superquadric), options.recognition.only_class.empty() ? 0.0 : kToldOtherwise});
+    const bool told = !options.recognition.only_class.empty();
+    if (!told) std::erase_if(candidates, [](const Candidate& c) { return c.model.evidence.cost > kExplainsNothing; });
+    candidates.push_back({std::move(superquadric), told ? kToldOtherwise : 0.0});
   }
   return candidates;
 }

@@ -104,6 +104,17 @@ TEST_F(FitView, SearchesAnewWhenTheFitGotWorse) {
   EXPECT_EQ(script().recognised, 1);
 }
 
+// Part of a chair is no wine glass, however much less of one the others are: it stays a volume without a name.
+TEST_F(FitView, NamesNoClassThatExplainsLessThanHalf) {
+  for (const PrimitivePtr& primitive : library.all()) script().cost_of_class[primitive->class_name] = 3.5;
+  const auto candidates = fit_view(block_view(), library);
+  ASSERT_EQ(candidates->size(), 1U);
+  EXPECT_EQ(candidates->front().model.method, "superquadric");
+  PipelineOptions told;
+  told.recognition.only_class = "mug";
+  EXPECT_GT(fit_view(block_view(), library, told)->size(), 1U);
+}
+
 TEST_F(FitView, SearchesAnewEveryNowAndThen) {
   PipelineOptions options;
   options.budget.search_every = 10;
