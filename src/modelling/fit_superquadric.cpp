@@ -13,6 +13,7 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr int kMaxTangents = 80;
+constexpr double kDoubtfulCost = 2.25;        ///< Half of what an unexplained reading costs.
 constexpr double kHalfSideOfNothing = 0.01;  ///< Metres: of the box where nothing was seen.
 
 /// Where the tile's middle looks at the support, or 1 m away.
@@ -47,8 +48,18 @@ FittedModel fit_superquadric(const ObjectView& view, const FitSuperquadricOption
   if (tells_a_shape(seen))
     result = options.algorithm == SuperquadricAlgorithm::kEmsView ? recover_from_view(seen, view.has_support, options.max_iterations) : recover_from_points(seen, box, options);
   if (!is_plausible(result.superquadric, box)) result = {box};
-  FittedModel model = volume_model(view, {"superquadric", superquadric_topology(), superquadric_vertices(result.superquadric),
-                                          horizontal_axis(result.superquadric), result.sigma_m, result.pose_information, result.superquadric.pose.translation()});
+  const auto modelled = [&](const SeenSuperquadric& found) {
+    return volume_model(view, {"superquadric", superquadric_topology(), superquadric_vertices(found.superquadric), horizontal_axis(found.superquadric), found.sigma_m,
+                               found.pose_information, found.superquadric.pose.translation()});
+  };
+  FittedModel model = modelled(result);
+  if (model.evidence.cost > kDoubtfulCost) {  // a chair's parts, say: then the box about them is at least where they are
+    FittedModel about = modelled({box});
+    if (about.evidence.silhouette_iou > model.evidence.silhouette_iou) {
+      model = std::move(about);
+      result = {box};
+    }
+  }
   model.iterations = result.iterations;
   model.converged = result.converged;
   return model;
