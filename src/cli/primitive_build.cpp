@@ -91,7 +91,7 @@ json member_json(const MemberReport& member) {
 }
 
 double typing_ms(const Primitive& primitive) {
-  const TriangleMesh typical{shape(primitive, primitive.typical_size_m()), primitive.topology->triangles};
+  const TriangleMesh typical = shape_mesh(primitive);
   const auto start = std::chrono::steady_clock::now();
   const PointTyping typing = type_points(typical);
   return typing.types.empty() ? 0 : 1e3 * seconds_since(start);
@@ -130,8 +130,6 @@ class ClassBuild {
     if (stop.stop_requested()) return failure(ErrorCode::kTimeout, "interrupted");
     json record{{"class", models_.name}, {"key", key_}, {"skipped", false}, {"reason", nullptr}, {"primitive", nullptr}, {"file", nullptr}, {"template", nullptr}, {"mean_moved", 0.0}, {"typing_ms", 0.0}, {"members", json::array()}};
     for (const MemberReport& member : members) record["members"].push_back(member_json(member));
-    std::error_code ignored;
-    fs::create_directories(report_, ignored);
     if (built) {
       built->primitive.training_views = train_views(built->primitive);
       if (const auto before = wire::read_primitive(file_)) carry_manual_types(*before, built->primitive);
@@ -143,6 +141,7 @@ class ClassBuild {
       if (auto written = wire::write_primitive(file_, built->primitive); !written) return tl::unexpected(written.error());
     } else {
       record["reason"] = built.error().what;
+      std::error_code ignored;
       fs::remove(file_, ignored);  // what is there was made of other models
     }
     record["seconds"] = seconds_since(start);

@@ -30,8 +30,6 @@ struct Check {
   bool good = false;
 };
 
-TriangleMesh typical(const Primitive& primitive, const std::vector<double>& modes = {}) { return {shape(primitive, primitive.typical_size_m(), modes), primitive.topology->triangles}; }
-
 /// Crossings of the mean moved two standard deviations either way along each mode.
 int crossings_along_modes(const Primitive& primitive) {
   int crossings = 0;
@@ -39,13 +37,13 @@ int crossings_along_modes(const Primitive& primitive) {
     for (const double sigma : {-2.0, 2.0}) {
       std::vector<double> modes(k + 1, 0.0);
       modes[k] = sigma;
-      crossings += count_self_intersections(typical(primitive, modes));
+      crossings += count_self_intersections(shape_mesh(primitive, modes));
     }
   return crossings;
 }
 
 std::vector<Check> check(const Primitive& primitive) {
-  const TriangleMesh mean = typical(primitive), filled{mean.vertices, primitive.topology->filled_triangles};
+  const TriangleMesh mean = shape_mesh(primitive), filled{mean.vertices, primitive.topology->filled_triangles};
   const MeshTopology topology = examine_topology(mean);
   const int genus = (2 * topology.components - topology.euler_characteristic) / 2, crossings = count_self_intersections(mean), along = crossings_along_modes(primitive);
   const double volume_ml = 1e6 * signed_volume(mean), filled_ml = 1e6 * signed_volume(filled), low_mm = 1e3 * bounds(mean.vertices).low.z();

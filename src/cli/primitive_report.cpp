@@ -66,8 +66,6 @@ class BodyPicture {
   Transform T_view_object_;
 };
 
-TriangleMesh shape_mesh(const Primitive& primitive, const std::vector<double>& modes) { return {shape(primitive, primitive.typical_size_m(), modes), primitive.topology->triangles}; }
-
 /// One shape in a cell of its own. All cells of a sheet have the same scale, so that sizes compare.
 Image<Rgb8> draw_shape(const Primitive& primitive, const std::vector<double>& modes, double radius_m, const std::string& caption, bool with_controls) {
   const TriangleMesh mesh = shape_mesh(primitive, modes);
@@ -79,6 +77,8 @@ Image<Rgb8> draw_shape(const Primitive& primitive, const std::vector<double>& mo
 }
 
 }  // namespace
+
+TriangleMesh shape_mesh(const Primitive& primitive, const std::vector<double>& modes) { return {shape(primitive, primitive.typical_size_m(), modes), primitive.topology->triangles}; }
 
 std::size_t count_controls(const Primitive& primitive) {
   return static_cast<std::size_t>(std::count(primitive.topology->types.begin(), primitive.topology->types.end(), PointType::kControl));
@@ -153,7 +153,7 @@ Image<Rgb8> draw_body(const TriangleMesh& mesh, const std::string& caption, Rgb8
 
 Image<Rgb8> draw_symmetry(const Primitive& primitive) {
   constexpr Rgb8 kAxis{255, 90, 90}, kPlane{120, 230, 140};
-  const TriangleMesh mesh = shape_mesh(primitive, {});
+  const TriangleMesh mesh = shape_mesh(primitive);
   const Bounds box = bounds(mesh.vertices);
   BodyPicture picture(box.centre(), 0.62 * box.size().norm());
   picture.body(mesh, kBody, 0.6);

@@ -18,6 +18,9 @@ void print_primitive(std::ostream& out, const Primitive& primitive);
 
 inline constexpr int kPrimitivePicture_px = 300;
 
+/// Its shape at its typical size.
+TriangleMesh shape_mesh(const Primitive& primitive, const std::vector<double>& modes = {});
+
 /// A body (z up) seen from 30 degrees above and the side, as large as it fits a square of kPrimitivePicture_px.
 Image<Rgb8> draw_body(const TriangleMesh& mesh, const std::string& caption, Rgb8 color);
 

@@ -37,11 +37,7 @@ std::vector<Vector3d> morph(const TriangleMesh& shape, const TriangleMesh& onto,
   topology.triangles = shape.triangles;
   const Bounds box = bounds(onto.vertices);
   const double longest = box.size().maxCoeff();
-  std::vector<Vector3d> normals_onto;
-  for (const Triangle& t : onto.triangles) {
-    const Vector3d& a = onto.vertices[static_cast<std::size_t>(t[0])];
-    normals_onto.push_back((onto.vertices[static_cast<std::size_t>(t[1])] - a).cross(onto.vertices[static_cast<std::size_t>(t[2])] - a).normalized());
-  }
+  const std::vector<Vector3d> normals_onto = triangle_normals(onto);
   /// How far the vertex is from what it should lie on: the nearest place, if that faces its way; else what it meets along its normal that does,
   /// since the nearest place of a thin wall may be its other side.
   const auto distance_along = [&](const Vector3d& vertex, const Vector3d& normal, double reach) -> std::optional<double> {

@@ -14,7 +14,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::array<const char*, 10> kColumns{"points", "controls", "regulars", "iterations", "ms", "P28 fit", "IoU", "dV[%]", "selfX[%]", "the paper"};
-constexpr std::array<const char*, 4> kColours{"#1663a6", "#d2691e", "#2e7d32", "#8e24aa"};
+constexpr std::array<const char*, 8> kColours{"#1663a6", "#d2691e", "#2e7d32", "#8e24aa", "#00838f", "#c62828", "#827717", "#5d4037"};
 
 std::string number(const std::optional<double>& value, const char* format) {
   if (!value) return "-";
@@ -44,7 +44,7 @@ std::vector<double> relative(const EnergyCurve& curve) {
 
 /// Energies over iterations, each as a share of its start.
 std::string plot(const std::vector<EnergyCurve>& curves) {
-  constexpr double kWidth = 720, kHeight = 360, kLeft = 60, kBottom = 40, kTop = 15, kRight = 15;
+  constexpr double kWidth = 720, kHeight = 360, kLeft = 60, kBottom = 40, kTop = 24, kRight = 15;
   std::size_t longest = 2;
   double highest = 1;
   for (const EnergyCurve& curve : curves) {
@@ -62,7 +62,7 @@ std::string plot(const std::vector<EnergyCurve>& curves) {
     svg += "<line x1=" + number(kLeft, "%.1f") + " x2=" + number(kWidth - kRight, "%.1f") + " y1=" + number(y(share), "%.1f") + " y2=" + number(y(share), "%.1f") + " stroke=\"#ddd\"/>";
     svg += text(kLeft - 6, y(share) + 4, "end", number(share, "%.2f")) + text(x(iteration), kHeight - kBottom + 18, "middle", number(iteration, "%.0f"));
   }
-  svg += text(0.5 * (kLeft + kWidth), kHeight - 6, "middle", "iteration") + text(kLeft + 6, kTop + 10, "start", "energy, share of its start");
+  svg += text(0.5 * (kLeft + kWidth), kHeight - 6, "middle", "iteration") + text(kLeft, kTop - 10, "start", "energy, share of its start (gfp_robust's contour has an energy of its own)");
   for (std::size_t c = 0; c < curves.size(); ++c) {
     const char* colour = kColours[c % kColours.size()];
     const auto values = relative(curves[c]);

@@ -5,6 +5,8 @@
 #include <numbers>
 #include <vector>
 
+#include "median.hpp"
+
 namespace gfp {
 namespace {
 
@@ -18,13 +20,6 @@ double mean(const std::vector<double>& values) {
   double sum = 0;
   for (const double value : values) sum += value;
   return values.empty() ? 0.0 : sum / static_cast<double>(values.size());
-}
-
-double median(std::vector<double> values) {
-  if (values.empty()) return 0.0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 std::vector<double> distances(const TriangleTree& surface, std::span<const Vec> points) {

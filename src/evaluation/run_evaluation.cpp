@@ -23,14 +23,13 @@ Result<Fit> fit_one(const ObjectView& view, const PrimitiveLibrary& library, con
   Result<Fit> fit;
   tbb::this_task_arena::isolate([&] {  // or a waiting thread would take up another case inside the measured time
     const double begin = thread_cpu_ms();
-    auto candidates = fit_view(view, library, options);
-    if (!candidates) {
-      fit = tl::unexpected(candidates.error());
+    auto estimate = fit_object(view, library, options);
+    if (!estimate) {
+      fit = tl::unexpected(estimate.error());
       return;
     }
-    auto estimates = select_models({view}, {std::move(*candidates)}, options.selection);
     fit->cpu_ms = thread_cpu_ms() - begin;
-    fit->model = std::move(estimates.front().model);
+    if (*estimate) fit->model = std::move((*estimate)->model);
   });
   return fit;
 }

@@ -1,8 +1,6 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 
 #include "gfp/evaluation/experiment.hpp"
 #include "gfp/evaluation/metrics.hpp"
@@ -11,6 +9,7 @@
 #include "gfp/modelling/model_contour_paper.hpp"
 #include "gfp/pipeline/fit_view.hpp"
 #include "gfp/registration/register_primitive.hpp"
+#include "median.hpp"
 #include "observe_case.hpp"
 #include "thread_cpu_time.hpp"
 
@@ -20,7 +19,7 @@ namespace {
 /// One way of fitting: `place` is not timed, `fit` is.
 struct Way {
   std::string name;
-  std::function<FittedModel(const ObjectView&, const PrimitivePtr&, const Placement&)> fit;
+  std::function<FittedModel(const ObjectView&, const PrimitiveLibrary&, const PrimitivePtr&, const Placement&)> fit;
   std::string paper;
 };
 
@@ -33,36 +32,35 @@ struct Plan {
 };
 
 /// A whole method, from recognition (the class is told) to selection.
-Way method(const std::string& name, const std::string& paper, const PrimitiveLibrary& library) {
+Way method(const std::string& name, const std::string& paper) {
   return {name,
-          [name, &library](const ObjectView& view, const PrimitivePtr& primitive, const Placement&) {
+          [name](const ObjectView& view, const PrimitiveLibrary& library, const PrimitivePtr& primitive, const Placement&) {
             PipelineOptions options;
             options.method = name;
             options.recognition.only_class = primitive->class_name;
-            auto candidates = fit_view(view, library, options);
-            if (!candidates || candidates->empty()) return FittedModel{};
-            return select_models({view}, {std::move(*candidates)}, options.selection).front().model;
+            auto estimate = fit_object(view, library, options);
+            return estimate && *estimate ? std::move((*estimate)->model) : FittedModel{};
           },
           paper};
 }
 
 Way contour(const std::string& name, ContourDirections directions, bool kd_tree, const std::string& paper) {
   return {name,
-          [=](const ObjectView& view, const PrimitivePtr&, const Placement& placement) {
+          [=](const ObjectView& view, const PrimitiveLibrary&, const PrimitivePtr&, const Placement& placement) {
             return model_contour_paper(view, placement, {.kd_tree = kd_tree}, directions);
           },
           paper};
 }
 
 Way sphere(const std::string& name, ContourDirections directions, bool kd_tree, const std::string& paper) {
-  return {name, [=](const ObjectView& view, const PrimitivePtr&, const Placement&) { return fit_sphere_snake(view, {.kd_tree = kd_tree}, directions); }, paper};
+  return {name, [=](const ObjectView& view, const PrimitiveLibrary&, const PrimitivePtr&, const Placement&) { return fit_sphere_snake(view, {.kd_tree = kd_tree}, directions); }, paper};
 }
 
 Way robust_contour() {
-  return {"gfp_robust's contour", [](const ObjectView& view, const PrimitivePtr&, const Placement& placement) { return model_contour(view, placement); }, ""};
+  return {"gfp_robust's contour", [](const ObjectView& view, const PrimitiveLibrary&, const PrimitivePtr&, const Placement& placement) { return model_contour(view, placement); }, ""};
 }
 
-std::vector<Plan> plans(const PrimitiveLibrary& library) {
+std::vector<Plan> plans() {
   using enum ContourDirections;
   const std::vector<Way> contours{contour("gfp, +-normal", kNormal, false, "410 points, 107 + 96 moved, 21 iterations, 680 ms"),
                                   contour("gfp, +-normal, kd-tree", kNormal, true, ""),
@@ -72,22 +70,15 @@ std::vector<Plan> plans(const PrimitiveLibrary& library) {
                                   sphere("sphere, 26 directions, kd-tree", kGrid26, true, "38 iterations, 9 s"),
                                   robust_contour()};
   std::vector<Way> all;
-  for (const std::string& name : method_names()) all.push_back(method(name, name == "gfp_paper" ? "0.7 to 1.5 s" : name == "superquadric" ? "4.79 s" : "", library));
+  for (const std::string& name : method_names()) all.push_back(method(name, name == "gfp_paper" ? "0.7 to 1.5 s" : name == "superquadric" ? "4.79 s" : ""));
   return {{"mug", "The contour of a generic mug needs half the iterations and a thirteenth of the time of one that starts from a sphere (P29).", "mug",
            "the contour, from one registered placement or from the cluster's sphere", true, true, contours},
           {"shoe", "A generic shoe fits better and faster than a superquadric (Table 1, P30).", "shoe", "the whole fit, the class told", false, false,
-           {method("superquadric", "4.79 s, fit 0.7689", library), method("multi_superquadric", "", library), method("gfp_paper", "1.53 s, fit 0.9762", library),
-            method("gfp_robust", "", library)}},
+           {method("superquadric", "4.79 s, fit 0.7689"), method("multi_superquadric", ""), method("gfp_paper", "1.53 s, fit 0.9762"),
+            method("gfp_robust", "")}},
           {"energy", "The energy falls to its minimum in fewer iterations from a generic primitive than from a sphere (Fig. 6, P29).", "mug",
            "the contour, from one registered placement or from the cluster's sphere", true, true, {contours[0], contours[3]}},
           {"speed", "A generic primitive is fitted in 0.7 to 1.5 s (P29, P30).", "", "the whole fit, the class told", false, false, all}};
-}
-
-double median(std::vector<double> values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 /// What one way gave on one view.
@@ -140,13 +131,19 @@ Result<std::vector<CaseSpec>> cases_of(const Plan& plan, const std::filesystem::
 
 }  // namespace
 
-std::vector<std::string> experiment_names() { return {"mug", "shoe", "energy", "speed"}; }
+std::vector<std::string> experiment_names() {
+  std::vector<std::string> names;
+  for (const Plan& plan : plans()) names.emplace_back(plan.name);
+  return names;
+}
 
 Result<Experiment> run_experiment(std::string_view name, const PrimitiveLibrary& library, const std::filesystem::path& folder, CaseOptions options,
                                   const std::function<void(std::size_t, std::size_t)>& progress) {
-  const std::vector<Plan> all = plans(library);
+  const std::vector<Plan> all = plans();
   const auto plan = std::find_if(all.begin(), all.end(), [&](const Plan& p) { return p.name == name; });
-  if (plan == all.end()) return failure(ErrorCode::kNotFound, "experiment = " + std::string(name) + ", expected one of mug, shoe, energy, speed");
+  std::string known;
+  for (const Plan& p : all) known += (known.empty() ? " " : ", ") + std::string(p.name);
+  if (plan == all.end()) return failure(ErrorCode::kNotFound, "experiment = " + std::string(name) + ", expected one of" + known);
   options.only.clear();
   const auto specs = cases_of(*plan, folder, options, library);
   if (!specs) return tl::unexpected(specs.error());
@@ -166,7 +163,7 @@ Result<Experiment> run_experiment(std::string_view name, const PrimitiveLibrary&
         Outcome outcome;
         one_core.execute([&] {
           const double begin = thread_cpu_ms();
-          outcome.model = plan->ways[w].fit(*observation.view, primitive, placement);
+          outcome.model = plan->ways[w].fit(*observation.view, library, primitive, placement);
           outcome.cpu_ms = thread_cpu_ms() - begin;
         });
         outcome.metrics = measure_fit(shown->truth, outcome.model, observation.points_camera);

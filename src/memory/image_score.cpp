@@ -6,10 +6,9 @@
 namespace gfp {
 namespace {
 
-constexpr double kCap = 4.5;                   ///< Negative log likelihood of a pixel that is not explained: 3 sigma.
 constexpr double kFreeSpaceTolerance = 0.017;  ///< Edges waver and mixed pixels float by this much along the ray, metres.
-constexpr double kSpillCost = 1.5 * kCap;      ///< A model in seen free space is worse than a bare pixel.
-constexpr double kUnknownCost = 0.02 * kCap;    ///< Where nothing is known a model may be, but has no reason to spread.
+constexpr double kSpillCost = 1.5 * kUnexplainedCost;      ///< A model in seen free space is worse than a bare pixel.
+constexpr double kUnknownCost = 0.02 * kUnexplainedCost;    ///< Where nothing is known a model may be, but has no reason to spread.
 
 std::size_t at(int index) { return static_cast<std::size_t>(index); }
 
@@ -25,7 +24,7 @@ ImageScore image_score(const ObservedTile& observed, const DepthTile& rendered, 
   int explained = 0, near = 0, visible = 0, violating = 0, covered = 0;
   for (const int cell : observed.object_cells) {
     if (!rendered.hit(cell)) {
-      cost += kCap;
+      cost += kUnexplainedCost;
       continue;
     }
     ++covered;
@@ -33,7 +32,7 @@ ImageScore image_score(const ObservedTile& observed, const DepthTile& rendered, 
     const double distance = plane_distance(observed, rendered, cell);
     const double sensor_sigma = static_cast<double>(observed.sigma_m[at(cell)]);
     const double variance = sensor_sigma * sensor_sigma + model_sigma_m * model_sigma_m;
-    cost += std::min(0.5 * distance * distance / variance, kCap);
+    cost += std::min(0.5 * distance * distance / variance, kUnexplainedCost);
     explained += distance * distance < 9 * variance ? 1 : 0;
     if (std::abs(distance) < 3 * sensor_sigma + 0.010) {
       squares += distance * distance;

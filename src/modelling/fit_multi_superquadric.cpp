@@ -18,9 +18,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr int kMaxTangents = 80;
 constexpr std::size_t kLeastPoints = 30;     ///< Of a body.
-constexpr double kModelError = 0.002;        ///< Metres, 1 sigma: parts of things are no superquadrics either.
 constexpr double kIndependence = 0.05;       ///< Neighbouring pixels err alike: this share of the points counts.
 constexpr double kMostNats = 12.5;           ///< A point at five sigmas and one farther off are equally unexplained.
 constexpr double kWorthBody = 15.0;          ///< Nats: eleven parameters more.

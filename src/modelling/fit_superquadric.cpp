@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "gfp/memory/image_score.hpp"
 #include "gfp/modelling/recover_superquadric.hpp"
 #include "modelling/recover_from_view.hpp"
 #include "modelling/volume_model.hpp"
@@ -12,8 +13,6 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr int kMaxTangents = 80;
-constexpr double kDoubtfulCost = 2.25;        ///< Half of what an unexplained reading costs.
 constexpr double kHalfSideOfNothing = 0.01;  ///< Metres: of the box where nothing was seen.
 
 /// Where the tile's middle looks at the support, or 1 m away.
@@ -53,7 +52,7 @@ FittedModel fit_superquadric(const ObjectView& view, const FitSuperquadricOption
                                found.pose_information, found.superquadric.pose.translation()});
   };
   FittedModel model = modelled(result);
-  if (model.evidence.cost > kDoubtfulCost) {  // a chair's parts, say: then the box about them is at least where they are
+  if (model.evidence.cost > kMostlyUnexplained) {  // a chair's parts, say: then the box about them is at least where they are
     FittedModel about = modelled({box});
     if (about.evidence.silhouette_iou > model.evidence.silhouette_iou) {
       model = std::move(about);

@@ -16,7 +16,6 @@ using Eigen::Vector3d;
 
 constexpr int kSearchPoints = 150, kSearchTangents = 30, kSearchIterations = 10;
 constexpr double kWorthFreedom = 8.0;    ///< Nats by which a freer body (not round, leaning) must explain more.
-constexpr double kModelError = 0.002;    ///< Metres, 1 sigma: things are no superquadrics.
 constexpr double kSharpExponent = 0.1;
 
 /// Smallest upright box about the points' shadows: yaw of its first side, half sides, centre.

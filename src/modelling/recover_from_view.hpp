@@ -4,6 +4,9 @@
 
 namespace gfp {
 
+inline constexpr int kMaxTangents = 80;        ///< Of a view, looked at.
+inline constexpr double kModelError = 0.002;   ///< Metres, 1 sigma: things are no superquadrics, nor are their parts.
+
 /// A superquadric as it was recovered: support frame.
 struct SeenSuperquadric {
   Superquadric superquadric;

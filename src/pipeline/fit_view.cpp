@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <utility>
 
+#include "gfp/memory/image_score.hpp"
 #include "gfp/modelling/fit_superquadric.hpp"
 #include "gfp/modelling/follow_model.hpp"
 #include "gfp/modelling/model_contour.hpp"
@@ -20,7 +21,6 @@ namespace {
 
 constexpr double kContourGain = 0.2;  ///< Cost by which a contour may improve one placement more than another.
 constexpr double kToldOtherwise = -20.0;  ///< Log prior of "none of the classes" beside what it always is, where the class was told.
-constexpr double kExplainsNothing = 2.25;  ///< Half of what an unexplained reading costs: a class that fits as badly is not named.
 constexpr const char* kSuperquadric = "superquadric";
 
 /// The contour is the dear part: only the best placements get one, and those that it may still bring to the front.
@@ -47,7 +47,7 @@ std::vector<Candidate> search(const ObjectView& view, const PrimitiveLibrary& li
   if (unknown_may_win(candidates, options.selection)) {
     auto superquadric = timings.measure(kSuperquadric, [&] { return fit_superquadric(view); });
     const bool told = !options.recognition.only_class.empty();
-    if (!told) std::erase_if(candidates, [](const Candidate& c) { return c.model.evidence.cost > kExplainsNothing; });
+    if (!told) std::erase_if(candidates, [](const Candidate& c) { return c.model.evidence.cost > kMostlyUnexplained; });
     candidates.push_back({std::move(superquadric), told ? kToldOtherwise : 0.0});
   }
   return candidates;
@@ -103,6 +103,13 @@ Result<std::vector<Candidate>> fit_view(const ObjectView& view, const PrimitiveL
   if (!method) return tl::unexpected(method.error());
   StageTimings unused;
   return method->fit(view, library, options, timings ? *timings : unused);
+}
+
+Result<std::optional<ObjectEstimate>> fit_object(const ObjectView& view, const PrimitiveLibrary& library, const PipelineOptions& options, StageTimings* timings) {
+  auto candidates = fit_view(view, library, options, timings);
+  if (!candidates) return tl::unexpected(candidates.error());
+  if (candidates->empty()) return std::nullopt;
+  return std::move(select_models({view}, {std::move(*candidates)}, options.selection).front());
 }
 
 }  // namespace gfp

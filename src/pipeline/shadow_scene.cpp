@@ -17,10 +17,9 @@ std::optional<SceneObject> fit_again(const SceneObject& object, const ObjectView
   view.warm_start.reset();
   view.unchanged = false;
   StageTimings timings;
-  auto candidates = fit_view(view, library, options, &timings);
-  if (!candidates || candidates->empty()) return std::nullopt;
-  auto estimates = select_models({view}, {std::move(*candidates)}, options.selection);
-  SceneObject shadow = describe(std::move(estimates.front()), view, object.status);
+  auto estimate = fit_object(view, library, options, &timings);
+  if (!estimate || !*estimate) return std::nullopt;
+  SceneObject shadow = describe(std::move(**estimate), view, object.status);
   shadow.ms = timings.ms();
   return shadow;
 }

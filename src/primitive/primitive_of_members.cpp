@@ -109,16 +109,23 @@ Primitive primitive_of_members(const ClassMembers& members, const ClassFacts& fa
   limit_modes(primitive);
 
   const TriangleMesh typical{shape(primitive, primitive.typical_size_m()), topology->triangles};
-  const PointTyping typing = type_points(typical);
-  topology->types = typing.types;
-  topology->hash = topology_hash(*topology);
-  primitive.features = typing.features;
   primitive.stable_poses = find_stable_poses(typical, facts.symmetry, {.upright_share = facts.upright_share});
+  primitive.provenance = facts.provenance;
+  complete_from_shape(primitive);
+  return primitive;
+}
+
+void complete_from_shape(Primitive& primitive) {
+  Topology topology = *primitive.topology;
+  const TriangleMesh typical{shape(primitive, primitive.typical_size_m()), topology.triangles};
+  const PointTyping typing = type_points(typical);
+  topology.types = with_manual_types(typing.types, primitive.manual_types);
+  topology.hash = topology_hash(topology);
+  primitive.topology = std::make_shared<const Topology>(std::move(topology));
+  primitive.features = typing.features;
   primitive.contact_pairs = sample_contact_pairs(typical);
   primitive.rest_edge_length = mean_edge_length(typical);
-  primitive.provenance = facts.provenance;
   primitive.content_hash = content_hash(primitive);
-  return primitive;
 }
 
 void set_manual_types(Primitive& primitive, std::vector<std::optional<PointType>> manual) {

@@ -1,13 +1,11 @@
 #include "gfp/primitive/upsampled.hpp"
 
-#include <array>
+#include <algorithm>
 #include <map>
 #include <utility>
 
 #include "gfp/core/split_triangle.hpp"
-#include "gfp/primitive/contact_pairs.hpp"
-#include "gfp/primitive/content_hash.hpp"
-#include "gfp/primitive/type_points.hpp"
+#include "gfp/primitive/primitive_of_members.hpp"
 
 namespace gfp {
 namespace {
@@ -79,16 +77,7 @@ Primitive upsampled(const Primitive& primitive, int levels) {
   if (levels <= 0) return primitive;
   Primitive finer = primitive;
   for (int level = 0; level < std::min(levels, kMaxUpsampling); ++level) halve_edges(finer);
-  Topology topology = *finer.topology;
-  const TriangleMesh typical{shape(finer, finer.typical_size_m()), topology.triangles};
-  const PointTyping typing = type_points(typical);
-  topology.types = with_manual_types(typing.types, finer.manual_types);
-  topology.hash = topology_hash(topology);
-  finer.topology = std::make_shared<const Topology>(std::move(topology));
-  finer.features = typing.features;
-  finer.contact_pairs = sample_contact_pairs(typical);
-  finer.rest_edge_length = mean_edge_length(typical);
-  finer.content_hash = content_hash(finer);
+  complete_from_shape(finer);
   return finer;
 }
 

@@ -32,10 +32,16 @@ void BM_SegmentsOursFirstFrame(benchmark::State& state) {
   state.counters["coverage"] = mean_coverage(state, [](const BenchScene& scene) { return segment_cloud(scene.cloud).labels; });
 }
 
+/// As if each scene had been seen before.
+std::vector<SupportPlane> planes_of_last_frames(const benchmark::State& state) {
+  std::vector<SupportPlane> planes;
+  for (const auto& scene : scenes(state)) planes.push_back(segment_cloud(scene.cloud).planes.at(0));
+  return planes;
+}
+
 /// As it runs: the plane of the frame before is known.
 void BM_SegmentsOurs(benchmark::State& state) {
-  std::vector<SupportPlane> last;
-  for (const auto& scene : scenes(state)) last.push_back(segment_cloud(scene.cloud).planes.at(0));
+  const std::vector<SupportPlane> last = planes_of_last_frames(state);
   Turn turn(state);
   for (auto _ : state) {
     const SupportPlane& plane = last[turn.index()];
@@ -63,8 +69,7 @@ Image<std::int32_t> plane_and_clusters(const OrganizedCloud& cloud, const Suppor
 }
 
 void BM_SegmentsOursPlaneAndClusters(benchmark::State& state) {
-  std::vector<SupportPlane> last;
-  for (const auto& scene : scenes(state)) last.push_back(segment_cloud(scene.cloud).planes.at(0));
+  const std::vector<SupportPlane> last = planes_of_last_frames(state);
   Turn turn(state);
   for (auto _ : state) {
     const SupportPlane& plane = last[turn.index()];

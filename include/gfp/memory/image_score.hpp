@@ -23,6 +23,9 @@ inline double plane_distance(const ObservedTile& observed, const DepthTile& rend
 bool in_free_space(const ObservedTile& observed, const DepthTile& rendered, int cell);
 
 /// Independent readings that an object's pixels are worth, for noise and misfit are correlated: what a score weighs in nats.
+inline constexpr double kUnexplainedCost = 4.5;                      ///< Negative log likelihood of a pixel that is not explained: 3 sigma.
+inline constexpr double kMostlyUnexplained = 0.5 * kUnexplainedCost;  ///< A mean cost: a fit that is worse says nothing of what the thing is.
+
 inline constexpr double kScorePixels = 60;
 
 inline constexpr double kModelSigmaM = 0.003;  ///< What even a good model does not follow, metres.

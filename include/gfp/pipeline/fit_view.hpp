@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "gfp/core/error.hpp"
@@ -11,7 +12,7 @@
 
 namespace gfp {
 
-/// All that options.method has to say about one object: every fit that `selection` should choose from, never empty.
+/// All that options.method has to say about one object: every fit that `selection` should choose from. Empty where the method finds nothing.
 ///
 /// gfp_robust: recognise -> register every hypothesis -> contour of the best few placements (by registration cost), and a
 /// superquadric where that may win. A view with a warm start keeps its shape and is only moved; every budget.reshape_every fits, or when
@@ -21,6 +22,10 @@ namespace gfp {
 /// Errors: kNotFound for an unknown method, naming the known ones.
 Result<std::vector<Candidate>> fit_view(const ObjectView& view, const PrimitiveLibrary& library, const PipelineOptions& options = {},
                                         StageTimings* timings = nullptr);
+
+/// The same for an object that is alone in its scene: the fit that `selection` chooses; nothing where the method finds none. Same errors.
+Result<std::optional<ObjectEstimate>> fit_object(const ObjectView& view, const PrimitiveLibrary& library, const PipelineOptions& options = {},
+                                                 StageTimings* timings = nullptr);
 
 /// Whether the view's last fit is to be followed, rather than all classes searched anew.
 bool is_tracked(const ObjectView& view, const FitBudgetOptions& options = {});

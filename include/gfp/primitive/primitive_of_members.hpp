@@ -39,6 +39,9 @@ struct ClassFacts {
 /// is dropped. Deterministic.
 Primitive primitive_of_members(const ClassMembers& members, const ClassFacts& facts);
 
+/// What follows from a primitive's shape, connectivity and manual types: types, features, contact pairs, rest edge length, hashes.
+void complete_from_shape(Primitive& primitive);
+
 /// The manual layer of point types replaced (empty, or one a vertex), and with it types and hashes; the automatic layer is found anew.
 void set_manual_types(Primitive& primitive, std::vector<std::optional<PointType>> manual);
 
