@@ -11,14 +11,16 @@ McapSource::McapSource(McapStreams streams, ReplayOptions options)
     : streams_(std::move(streams)), options_(std::move(options)),
       control_(options_.control ? options_.control : std::make_shared<ReplayControl>()) {
   const double speed = options_.rate_hz > 0 ? options_.speed : 0;
-  control_->begin(since_begin(streams_.frames() - 1), speed);
+  control_->begin(streams_.time(0), since_begin(streams_.frames() - 1), speed);
   position_ = first_at(Nanoseconds(std::llround(1e9 * options_.start_s)));
 }
 
 SourceInfo McapSource::info() const {
   const double duration_s = std::chrono::duration<double>(since_begin(streams_.frames() - 1)).count();
   const double rate_hz = duration_s > 0 ? static_cast<double>(streams_.frames() - 1) / duration_s : 0;
-  return {"replay", "MCAP recording", report_.file.string(), rate_hz, 0.0, 65.535, !options_.loop};
+  // Somebody who turns the knobs makes it slow or halt, which is no fault of the recording's.
+  const bool is_steered = options_.control != nullptr;
+  return {"replay", "MCAP recording", report_.file.string(), is_steered ? 0 : rate_hz, 0.0, 65.535, is_steered || !options_.loop, true};
 }
 
 Result<void> McapSource::open() {
@@ -52,10 +54,14 @@ void McapSource::follow_control() {
 }
 
 Result<Frame> McapSource::grab(std::chrono::milliseconds timeout) {
-  if (!control_->wait_until_running(timeout)) return failure(ErrorCode::kTimeout, "the replay is paused");
+  if (!control_->wait_until_running(timeout)) return failure(ErrorCode::kTimeout, "paused: somebody holds the replay");
   follow_control();
   if (position_ >= streams_.frames() && !options_.loop) {
     control_->played(last_played_, true);
+    if (control_->holds_at_end()) {
+      if (!control_->wait_for_seek(timeout)) return failure(ErrorCode::kTimeout, "paused: the recording has come to its end");
+      return grab(timeout);
+    }
     return failure(ErrorCode::kEndOfStream, "the recording has come to its end");
   }
   if (position_ >= streams_.frames()) {
@@ -76,7 +82,7 @@ Result<Frame> McapSource::grab(std::chrono::milliseconds timeout) {
   last_stamp_ = std::max(frame.stamps.sensor + pass_offset_, last_stamp_ + Nanoseconds(1));
   frame.stamps.sensor = last_stamp_;
   frame.stamps.monotonic = options_.frame_time ? last_stamp_ : monotonic_now();
-  frame.stamps.realtime = options_.frame_time ? last_stamp_ : realtime_now();
+  frame.stamps.realtime = options_.frame_time ? last_stamp_ : options_.recorded_time ? streams_.time(index) : realtime_now();
   control_->played(last_played_, false);
   return frame;
 }

@@ -21,6 +21,7 @@ struct ReplayOptions {
   std::string topic;                    ///< Of its depth images; empty: found.
   std::string color_topic;              ///< Of colour registered to depth, in the files of others; ours are found.
   std::shared_ptr<ReplayControl> control;  ///< To pause, step and seek it; may be empty.
+  bool recorded_time = false;           ///< Of an MCAP recording: the host's CLOCK_REALTIME stamps are those of recording, so that a viewer's time line is the file's.
   bool frame_time = false;              ///< Deterministic mode: the host stamps are the sensor's, no clock is read.
   std::string axes;                     ///< Of clouds, as parse_axes() reads them; empty: found from the cloud.
   std::optional<double> depth_scale_m;  ///< Metres per unit of 16-bit depth; wins over the camera file and the format.

@@ -4,7 +4,7 @@
 #include <chrono>
 #include <memory>
 
-// States:  connecting -> streaming <-> stalled -> lost -> (back-off) connecting ...
+// States:  connecting -> streaming <-> stalled, paused; stalled -> lost -> (back-off) connecting ...
 //          any -> ended | failed | stopped, which are final.
 
 namespace gfp {
@@ -29,6 +29,8 @@ std::string_view fault_of(const Error& error) {
   if (error.code == ErrorCode::kTimeout) return fault::kTimeout;
   return error.code == ErrorCode::kDeviceLost || error.code == ErrorCode::kNotFound || error.code == ErrorCode::kIo ? fault::kLost : fault::kCorrupt;
 }
+
+bool is_pause(const Error& error) { return error.code == ErrorCode::kTimeout && error.what.starts_with("paused:"); }
 
 /// One call of run_source(): the status and who is told about it.
 class Run {
@@ -76,6 +78,12 @@ class Run {
         if (!deliver(std::move(*frame))) return change(SourceState::kStopped);
         backoff.reset();
         stalls = 0;
+        continue;
+      }
+      if (is_pause(frame.error())) {
+        next_fault_ = {};
+        health_.restart();
+        change(SourceState::kPaused);
         continue;
       }
       status_.last_error = frame.error();
@@ -128,6 +136,7 @@ std::string_view to_string(SourceState state) {
     case SourceState::kConnecting: return "connecting";
     case SourceState::kStreaming: return "streaming";
     case SourceState::kStalled: return "stalled";
+    case SourceState::kPaused: return "paused";
     case SourceState::kLost: return "lost";
     case SourceState::kEnded: return "ended";
     case SourceState::kFailed: return "failed";

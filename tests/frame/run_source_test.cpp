@@ -66,6 +66,16 @@ TEST(RunSource, CountsTimeoutsAndCorruptFramesAndSaysStalledOnce) {
   EXPECT_EQ(source.opens, 1);
 }
 
+// However long: a recording that is held is neither stuck nor lost.
+TEST(RunSource, WaitsForARecordingThatIsHeld) {
+  ScriptedSource source({frame(1), test::paused(), test::paused(), test::paused(), test::paused(), test::paused(), frame(2)});
+  const Outcome outcome = run(source);
+  EXPECT_EQ(outcome.sequences, (std::vector<std::uint64_t>{1, 2}));
+  EXPECT_EQ(outcome.changes, (std::vector{kStreaming, kPaused, kStreaming, kEnded}));
+  EXPECT_EQ(outcome.status.timeouts, 0U);
+  EXPECT_EQ(source.opens, 1);
+}
+
 TEST(RunSource, ReopensAStuckDevice) {
   const auto timeout = fault(ErrorCode::kTimeout);
   ScriptedSource source({frame(1), timeout, timeout, timeout, frame(2)});

@@ -139,6 +139,31 @@ TEST(McapSource, FollowsItsControl) {
   EXPECT_GT(back->stamps.sensor, sought->stamps.sensor) << "time goes on rising after a jump back";
 }
 
+// A viewer's time line: it can be wound back from the end, and stamps are those of recording.
+TEST(McapSource, HoldsAtItsEndForASeek) {
+  const test::TemporaryFolder folder;
+  ReplayOptions options = at_once();
+  options.frame_time = false;
+  options.recorded_time = true;
+  options.control = std::make_shared<ReplayControl>();
+  options.control->hold_at_end();
+  auto source = open_mcap(record_samples(folder, 3), options);
+  ASSERT_TRUE(source && (*source)->open());
+  EXPECT_EQ(options.control->state().begin, sample_frame(0).stamps.realtime);
+  for (int i = 0; i < 3; ++i) EXPECT_EQ((*source)->grab(1s)->stamps.realtime, sample_frame(i).stamps.realtime);
+  const auto held = (*source)->grab(1ms);
+  ASSERT_FALSE(held);
+  EXPECT_EQ(held.error().code, ErrorCode::kTimeout);
+  EXPECT_TRUE(held.error().what.starts_with("paused:"));
+  EXPECT_TRUE(options.control->state().ended);
+  options.control->seek(kPeriod);
+  EXPECT_FALSE(options.control->state().ended);
+  const auto again = (*source)->grab(1ms);
+  ASSERT_TRUE(again) << again.error().what;
+  EXPECT_EQ(again->stamps.realtime, sample_frame(1).stamps.realtime);
+  EXPECT_EQ((*source)->info().rate_hz, 0) << "who is steered is not slow";
+}
+
 /// A message of ROS 2: CDR in either byte order.
 class Cdr {
  public:

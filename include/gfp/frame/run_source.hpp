@@ -17,6 +17,7 @@ enum class SourceState {
   kConnecting,  ///< Opened (or trying to), no frame yet.
   kStreaming,   ///< Frames arrive.
   kStalled,     ///< Open, but timeouts or corrupt frames only; recovers by itself with the next frame.
+  kPaused,      ///< Somebody holds the recording; it is as it should be.
   kLost,        ///< Gone, or stuck for `stalls_before_reopen` grabs: reconnecting with back-off.
   kEnded,       ///< The recording came to its end.
   kFailed,      ///< Cannot work as configured (`last_error` says what to fix); not retried.
@@ -62,7 +63,8 @@ void visit_fields(SourceOptions& o, Visitor&& field) {
 /// The sensor stamps of what is no recording become host time (ClockFit), so that the frames of several sensors can be ordered.
 ///
 /// `on_change` is called on this thread once per change of state, fault or clock state (not per frame), after the status was updated.
-/// grab(): kTimeout and damage of one frame (any other code) are counted, kDeviceLost reopens, kEndOfStream ends.
+/// grab(): kTimeout and damage of one frame (any other code) are counted, kDeviceLost reopens, kEndOfStream ends; kTimeout that begins with
+/// `paused:` is neither counted nor a stall.
 /// open(): kInvalidArgument, kUnsupported, kCorruptData and kTooLarge end as kFailed; anything else is tried again.
 SourceStatus run_source(FrameSource& source, LatestSlot<FramePtr>& out, const SourceOptions& options,
                         const std::stop_token& stop, const std::function<void(const SourceStatus&)>& on_change = {});

@@ -1,4 +1,4 @@
-#include "replay/replay_control.hpp"
+#include "gfp/frame/replay_control.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -32,6 +32,8 @@ void ReplayControl::set_speed(double speed) {
 void ReplayControl::seek(Nanoseconds position) {
   MutexLock lock(mutex_);
   seek_ = std::clamp(position, Nanoseconds(0), state_.duration);
+  state_.position = *seek_;
+  state_.ended = false;
   if (state_.paused) ++steps_;  // a person who seeks wants to see where
   changed_.notify_all();
 }
@@ -41,8 +43,19 @@ ReplayControl::State ReplayControl::state() const {
   return state_;
 }
 
-void ReplayControl::begin(Nanoseconds duration, double speed) {
+void ReplayControl::hold_at_end() {
   MutexLock lock(mutex_);
+  holds_at_end_ = true;
+}
+
+bool ReplayControl::holds_at_end() const {
+  MutexLock lock(mutex_);
+  return holds_at_end_;
+}
+
+void ReplayControl::begin(Nanoseconds recorded_at, Nanoseconds duration, double speed) {
+  MutexLock lock(mutex_);
+  state_.begin = recorded_at;
   state_.duration = duration;
   state_.speed = speed;
 }
@@ -65,6 +78,11 @@ bool ReplayControl::wait_until_running(std::chrono::milliseconds timeout) {
   if (!changed_.wait_for(lock, timeout, may_run)) return false;
   if (state_.paused) --steps_;
   return true;
+}
+
+bool ReplayControl::wait_for_seek(std::chrono::milliseconds timeout) {
+  MutexLock lock(mutex_);
+  return changed_.wait_for(lock, timeout, [this]() GFP_REQUIRES(mutex_) { return seek_.has_value(); });
 }
 
 }  // namespace gfp
