@@ -76,6 +76,8 @@ void fill_model(const FittedModel& model, VertexCoding coding, v1::SceneObject& 
   fill(model.evidence, *message.mutable_evidence());
   message.set_converged(model.converged);
   message.set_iterations(static_cast<std::uint32_t>(model.iterations));
+  message.mutable_energies()->Add(model.energies.begin(), model.energies.end());
+  if (model.primitive) message.set_primitive(model.primitive->name);
 }
 
 std::shared_ptr<const Topology> topology_without_triangles(std::uint64_t hash) {
@@ -89,8 +91,8 @@ Result<FittedModel> model_from(const v1::SceneObject& message, const TopologyLoo
   if (!pose) return tl::unexpected(pose.error());
   if (message.pose_covariance_size() != 36)
     return failure(ErrorCode::kCorruptData, fmt::format("object.pose_covariance has {} numbers, expected 36", message.pose_covariance_size()));
-  if (message.modes_size() > kMaxListItems)
-    return failure(ErrorCode::kTooLarge, fmt::format("object.modes has {} numbers, at most {} are read", message.modes_size(), kMaxListItems));
+  if (message.modes_size() > kMaxListItems || message.energies_size() > kMaxListItems)
+    return failure(ErrorCode::kTooLarge, fmt::format("object.modes has {} numbers, object.energies {}, at most {} are read", message.modes_size(), message.energies_size(), kMaxListItems));
   auto vertices = vertices_from(message.vertices());
   if (!vertices) return tl::unexpected(vertices.error());
   FittedModel model;
@@ -109,6 +111,7 @@ Result<FittedModel> model_from(const v1::SceneObject& message, const TopologyLoo
   model.evidence = evidence_from(message.evidence());
   model.converged = message.converged();
   model.iterations = static_cast<int>(message.iterations());
+  model.energies.assign(message.energies().begin(), message.energies().end());
   model.topology = topologies ? topologies(message.vertices().topology_hash()) : nullptr;
   if (!model.topology) model.topology = topology_without_triangles(message.vertices().topology_hash());
   // The topology was checked against its own count: this object must have as many vertices, or triangles would point beyond them.

@@ -22,7 +22,7 @@ void fill_lost(const Scene& scene, std::uint64_t id, v1::ObjectUpdate& message);
 /// The topology of a hash; nullptr where it has not arrived yet.
 using TopologyLookup = std::function<std::shared_ptr<const Topology>(std::uint64_t hash)>;
 
-/// The Scene that was sent. What does not travel: primitives, energies. An object whose topology is not known has one
+/// The Scene that was sent. What does not travel: primitives. An object whose topology is not known has one
 /// with its hash and no triangles. Errors: kTooLarge, kCorruptData, kInvalidArgument (camera), kUnsupported.
 Result<Scene> scene_from(const v1::Scene& message, const TopologyLookup& topologies);
 Result<SceneObject> object_from(const v1::SceneObject& message, const TopologyLookup& topologies);

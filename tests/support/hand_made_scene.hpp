@@ -59,6 +59,7 @@ inline SceneObject hand_made_object(std::uint64_t id, Random& random) {
   object.model.yaw_high_rad = 0.3;
   object.model.evidence = {0.002, 0.98, 0.9, 0.01, 0.85, 0.001, 0.002, 1.5, 0.7};
   object.model.iterations = 8;
+  object.model.energies = {0.5, 0.25, 0.125 + random.uniform()};
   object.model.converged = true;
   object.grasps.grasps = {hand_made_grasp(random), hand_made_grasp(random)};
   object.pixels = 1234;

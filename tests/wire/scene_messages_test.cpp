@@ -50,6 +50,7 @@ TEST(SceneMessages, ASceneComesBackTheSame) {
     EXPECT_EQ(b.stable_pose, a.stable_pose);
     EXPECT_EQ(b.iterations, a.iterations);
     EXPECT_EQ(b.converged, a.converged);
+    EXPECT_EQ(b.energies, a.energies);
     EXPECT_EQ(b.topology->triangles, a.topology->triangles);
   }
 }
