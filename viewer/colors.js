@@ -1,4 +1,5 @@
 // Colours of classes and scales, as [r, g, b] in 0..1 (sRGB).
+export const SECOND_SEEN = [0.64, 0.53, 0.96], SECOND_INFERRED = [0.95, 0.47, 0.66]; // of the second method
 export const SEEN = [0.32, 0.78, 0.63], INFERRED = [0.94, 0.63, 0.29];
 
 const RAMP = [[0.27, 0.0, 0.33], [0.23, 0.32, 0.55], [0.13, 0.57, 0.55], [0.37, 0.79, 0.38], [0.99, 0.91, 0.14]]; // viridis, by its quarters

@@ -2,6 +2,7 @@
 import { createFileRegistry, fromBinary } from "@bufbuild/protobuf";
 import { FileDescriptorSetSchema } from "@bufbuild/protobuf/wkt";
 
+const PLAYBACK = ["playing", "paused", "buffering", "ended"];
 const SUBPROTOCOLS = ["foxglove.sdk.v1", "foxglove.websocket.v1"];
 
 function bytesOfBase64(text) {
@@ -9,9 +10,12 @@ function bytesOfBase64(text) {
 }
 
 export class Connection {
-  /** `wanted(topic)` says whether to subscribe; `onMessage(topic, value, logTime)` and `onState(state)` are told what happens. */
-  constructor(url, { wanted, onMessage, onState }) {
-    Object.assign(this, { url, wanted, onMessage, onState });
+  /**
+   * `wanted(topic)` says whether to subscribe; `onMessage(topic, read, logTime_ms)`, `onState(state)`, `onTopics(topics)` and `onPlayback(playback)`
+   * are told what happens. A playback is {begin_ns, end_ns, now_ns, status, speed} of the replay, or null where there is none.
+   */
+  constructor(url, { wanted, onMessage, onState, onTopics, onPlayback }) {
+    Object.assign(this, { url, wanted, onMessage, onState, onTopics, onPlayback });
     this.retry_ms = 250;
     this.open();
   }
@@ -19,7 +23,8 @@ export class Connection {
   open() {
     this.channels = new Map(); // id -> {topic, schema, subscription}
     this.bySubscription = new Map();
-    this.nextSubscription = 1;
+    this.nextSubscription = this.nextRequest = 1;
+    this.playback = null;
     this.onState("connecting");
     const socket = new WebSocket(this.url, SUBPROTOCOLS);
     socket.binaryType = "arraybuffer";
@@ -42,14 +47,17 @@ export class Connection {
       const isNew = this.session !== undefined && this.session !== message.sessionId;
       this.session = message.sessionId;
       this.onState(isNew ? "restarted" : "live");
+      this.beginPlayback(message);
     } else if (message.op === "advertise") {
       for (const channel of message.channels) {
         const registry = createFileRegistry(fromBinary(FileDescriptorSetSchema, bytesOfBase64(channel.schema)));
         this.channels.set(channel.id, { topic: channel.topic, schema: registry.getMessage(channel.schemaName) });
       }
+      this.onTopics([...this.channels.values()].map(({ topic }) => topic));
       this.review();
     } else if (message.op === "unadvertise") {
       for (const id of message.channelIds) this.channels.delete(id);
+      this.onTopics([...this.channels.values()].map(({ topic }) => topic));
     } else if (message.op === "status" && message.level > 0) {
       console.warn(message.message);
     }
@@ -75,9 +83,44 @@ export class Connection {
     if (unsubscribe.length) this.send({ op: "unsubscribe", subscriptionIds: unsubscribe });
   }
 
+  /** Playback states come only to who has asked for something: we ask for what is the case. */
+  beginPlayback({ capabilities, dataStartTime, dataEndTime, metadata }) {
+    this.playback = null;
+    if (capabilities.includes("playbackControl")) {
+      const nanoseconds = ({ sec, nsec }) => BigInt(sec) * 1_000_000_000n + BigInt(nsec);
+      const begin_ns = nanoseconds(dataStartTime);
+      this.playback = { begin_ns, end_ns: nanoseconds(dataEndTime), now_ns: begin_ns, status: metadata.playback, speed: Number(metadata.speed) || 1 };
+      this.steer({});
+    }
+    this.onPlayback(this.playback);
+  }
+
+  /** Asks the replay to play or to pause, how fast, and where; what is not said stays. */
+  steer({ play = this.playback.status === "playing", speed = this.playback.speed, seek_ns }) {
+    const id = new TextEncoder().encode(String(this.nextRequest++));
+    const request = new DataView(new ArrayBuffer(19 + id.length));
+    request.setUint8(0, 3);
+    request.setUint8(1, play ? 0 : 1);
+    request.setFloat32(2, speed, true);
+    request.setUint8(6, seek_ns === undefined ? 0 : 1);
+    request.setBigUint64(7, seek_ns ?? 0n, true);
+    request.setUint32(15, id.length, true);
+    new Uint8Array(request.buffer).set(id, 19);
+    if (this.socket.readyState === WebSocket.OPEN) this.socket.send(request.buffer);
+  }
+
   received(buffer) {
     const view = new DataView(buffer);
-    if (view.getUint8(0) !== 1) return;
+    const opcode = view.getUint8(0);
+    if (opcode === 2 && this.playback) {
+      this.playback.now_ns = view.getBigUint64(1, true);
+      return this.onPlayback(this.playback);
+    }
+    if (opcode === 5 && this.playback) {
+      Object.assign(this.playback, { status: PLAYBACK[view.getUint8(1)], now_ns: view.getBigUint64(2, true), speed: view.getFloat32(10, true) });
+      return this.onPlayback(this.playback);
+    }
+    if (opcode !== 1) return;
     const channel = this.bySubscription.get(view.getUint32(1, true));
     if (!channel) return;
     const logTime_ms = Number(view.getBigUint64(5, true) / 1000n) / 1000;

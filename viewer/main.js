@@ -1,17 +1,23 @@
 // The page: newest message of each topic in, picture and figures out.
 import { Connection } from "./connection.js";
-import { element, showConnection, showDetails, showLegend, showObjects, showSensors, showStages } from "./panel.js";
+import { element } from "./element.js";
+import { showConnection, showDetails, showLegend, showObjects, showSensors, showStages } from "./panel.js";
+import { Player } from "./player.js";
 import { World } from "./world.js";
 
 const $ = (id) => document.getElementById(id);
-const state = { selected: null, scene: null, sensor: null, topologies: new Map(), statuses: new Map(), isPaused: false, pointMode: "colour" };
+const state = { selected: null, scene: null, sensor: null, topologies: new Map(), statuses: new Map(), isPaused: false, pointMode: "colour", second: null, meshMode: "seen" };
 const world = new World($("canvas"), $("labels"), select);
 
+const player = new Player((request) => connection.steer(request));
+
+const SHADOW = /^\/gfp\/shadow\/([^/]+)\/$/;
 const STREAM = /^\/gfp\/sensor\/([^/]+)\/(depth|color|camera)\/$/;
 
 /** What is worth its bandwidth: images only where the points are drawn, and of one sensor. */
 function wanted(topic) {
   if (["/gfp/scene/", "/gfp/mesh/", "/gfp/status/"].includes(topic)) return true;
+  if (SHADOW.test(topic)) return world.options.compare !== "off";
   const stream = STREAM.exec(topic);
   if (!stream) return false;
   state.sensor ??= stream[1];
@@ -33,7 +39,10 @@ function onMessage(topic, read, logTime_ms) {
     return;
   } else if (topic === "/gfp/scene/") {
     const scene = read();
-    if (state.sensor === null || scene.header.sensor === state.sensor) takeScene(scene, Date.now() - logTime_ms);
+    if (state.sensor === null || scene.header.sensor === state.sensor) takeScene(scene, player.isActive ? null : Date.now() - logTime_ms);
+  } else if (SHADOW.test(topic)) {
+    const scene = read();
+    if (state.sensor === null || scene.header.sensor === state.sensor) takeSecond(scene);
   } else if (stream[2] === "camera") {
     world.cloud.setCalibration(read());
   } else {
@@ -47,14 +56,32 @@ function takeScene(scene, age_ms) {
   state.scene = scene;
   if (state.selected !== null && !scene.objects.some(({ id }) => id === state.selected)) state.selected = null;
   world.setScene(scene, state.topologies, state.selected);
+  legend();
   showStages(scene, age_ms);
+  showChoice();
+}
+
+function takeSecond(scene) {
+  if (world.options.compare === "off") return; // what was on its way
+  state.second = scene;
+  world.setSecond(scene, state.topologies);
+  legend();
   showChoice();
 }
 
 function showChoice() {
   if (!state.scene) return;
   showObjects(state.scene, state.selected, select);
-  showDetails(state.scene.objects.find(({ id }) => id === state.selected), world.meshes.get(state.selected)?.decoded);
+  const picked = (scene, meshes) => {
+    const object = scene?.objects.find(({ id }) => id === state.selected);
+    return object && { object, decoded: meshes.get(state.selected)?.decoded };
+  };
+  showDetails(picked(state.scene, world.meshes), world.options.compare === "off" ? undefined : picked(state.second, world.second.meshes));
+}
+
+function legend() {
+  const main = state.scene?.objects[0]?.method ?? "";
+  showLegend(state.meshMode, world.options.compare === "off" ? null : { main, second: state.second?.profile ?? "…", compare: world.options.compare });
 }
 
 function select(id) {
@@ -70,7 +97,9 @@ function selectNext(step) {
   select(ids[at < 0 ? (step > 0 ? 0 : ids.length - 1) : (at + step + ids.length) % ids.length]);
 }
 
+/** Of a replay the replay halts; of a live sensor only what is shown. */
 function pause() {
+  if (player.isActive) return player.toggle();
   state.isPaused = !state.isPaused;
   $("pause").setAttribute("aria-pressed", state.isPaused);
   $("pause").textContent = state.isPaused ? "Resume" : "Pause";
@@ -95,8 +124,9 @@ function radioGroup(parent, title, choices, initial, onChoose) {
 }
 
 const chooseMesh = radioGroup($("mesh-mode"), "Meshes", [["seen", "Seen"], ["sigma", "Sigma"], ["object", "Object"]], "seen", (mode) => {
+  state.meshMode = mode;
   world.setMeshMode(mode);
-  showLegend(mode);
+  legend();
 });
 const choosePoints = radioGroup($("cloud-mode"), "Points", [["colour", "Colour"], ["distance", "Distance"], ["objects", "Objects"]], "colour", (mode) => {
   state.pointMode = mode;
@@ -106,6 +136,20 @@ const choosePoints = radioGroup($("cloud-mode"), "Points", [["colour", "Colour"]
 });
 
 var connection = null; // the choices above ask for it before it is made
+
+const chooseCompare = radioGroup($("compare"), "Second", [["off", "Off"], ["beside", "Beside"], ["instead", "Instead"]], "off", (mode) => {
+  world.setCompare(mode);
+  if (mode === "off") world.setSecond((state.second = null), state.topologies);
+  legend();
+  connection?.review();
+  showChoice();
+});
+
+function takeTopics(topics) {
+  const hasSecond = topics.some((topic) => SHADOW.test(topic));
+  $("compare").hidden = !hasSecond;
+  if (!hasSecond && world.options.compare !== "off") chooseCompare("off");
+}
 
 const toggles = new Map();
 for (const [option, text] of [["points", "Points"], ["meshes", "Meshes"], ["grasps", "Grasps"], ["table", "Table"], ["names", "Names"]]) {
@@ -132,17 +176,22 @@ const KEYS = [
   ["1 2 3", "Meshes: seen, sigma, object", ["1", "2", "3"], (key) => chooseMesh(["seen", "sigma", "object"][key - 1])],
   ["4 5 6", "Points: colour, distance, objects", ["4", "5", "6"], (key) => choosePoints(["colour", "distance", "objects"][key - 4])],
   ["P M G T N", "Points, meshes, grasps, table, names on or off", ["p", "m", "g", "t", "n"], (key) => toggles.get({ p: "points", m: "meshes", g: "grasps", t: "table", n: "names" }[key])()],
-  ["Space", "Pause", [" "], pause],
+  ["C", "Second method, where one runs: off, beside, instead", ["c"], () => $("compare").hidden || chooseCompare({ off: "beside", beside: "instead", instead: "off" }[world.options.compare])],
+  ["Space", "Pause; of a replay, the replay", [" "], pause],
+  [", .", "Of a replay: a frame back or on", [",", "."], (key) => player.isActive && player.step(key === "," ? -1 : 1)],
+  ["Shift+← →", "Of a replay: a second back or on", ["Shift+ArrowLeft", "Shift+ArrowRight"], (key) => player.isActive && player.jump(key === "Shift+ArrowLeft" ? -1 : 1)],
   ["?", "This list", ["?"], () => $("help").showModal()],
 ];
 for (const [keys, text] of KEYS) $("keys").append(element("dt", {}, ...keys.split(" ").map((key) => element("kbd", { text: key }))), element("dd", { text }));
 document.addEventListener("keydown", (event) => {
   if (event.ctrlKey || event.metaKey || event.altKey || $("help").open) return;
   if (event.key === " " && event.target instanceof HTMLButtonElement) return; // it presses the button
-  const found = KEYS.find(([, , keys]) => keys.includes(event.key));
+  if (event.target.matches("input, select") && /^(Arrow|Page|Home|End)/.test(event.key)) return; // it moves the slider, or the choice
+  const key = event.shiftKey && event.key.startsWith("Arrow") ? `Shift+${event.key}` : event.key;
+  const found = KEYS.find(([, , keys]) => keys.includes(key));
   if (!found) return;
   event.preventDefault();
-  found[3](event.key);
+  found[3](key);
 });
 $("pause").addEventListener("click", pause);
 $("help-button").addEventListener("click", () => $("help").showModal());
@@ -150,10 +199,16 @@ $("help-button").addEventListener("click", () => $("help").showModal());
 connection = new Connection(`${location.protocol === "https:" ? "wss" : "ws"}://${location.host}/${location.search}`, {
   wanted,
   onMessage,
+  onTopics: takeTopics,
+  onPlayback: (playback) => {
+    player.show(playback);
+    $("pause").hidden = playback !== null; // the player bar has the button
+    if (playback) showConnection("replay");
+  },
   onState: (now) => {
     if (now === "restarted") state.topologies.clear(), state.statuses.clear();
     if (!state.isPaused) showConnection(now);
   },
 });
 document.addEventListener("visibilitychange", () => connection.review());
-window.gfp = { state, world }; // for whoever looks from the browser's console, and for the tests
+window.gfp = { state, world, player }; // for whoever looks from the browser's console, and for the tests

@@ -1,6 +1,6 @@
 // Meshes and grasps of a scene as things to draw.
 import * as THREE from "three";
-import { INFERRED, SEEN, certainty, colorOfId, ramp } from "./colors.js";
+import { INFERRED, SECOND_INFERRED, SECOND_SEEN, SEEN, certainty, colorOfId, ramp } from "./colors.js";
 
 export const SIGMA_FULL_M = 0.02; // the end of the colour scale
 
@@ -20,10 +20,11 @@ export function decodeVertices(vertices) {
   return { count, positions, sigmas, seen };
 }
 
-function vertexColors(mode, id, { count, sigmas, seen }) {
+function vertexColors(mode, { id, isSecond, decoded: { count, sigmas, seen } }) {
   const colors = new Float32Array(3 * count), own = colorOfId(id);
+  const [whenSeen, whenInferred] = isSecond ? [SECOND_SEEN, SECOND_INFERRED] : [SEEN, INFERRED];
   for (let i = 0; i < count; ++i) {
-    const color = mode === "sigma" ? ramp(sigmas[i] / SIGMA_FULL_M) : mode === "object" ? own : seen[i] ? SEEN : INFERRED;
+    const color = mode === "sigma" ? ramp(sigmas[i] / SIGMA_FULL_M) : mode === "object" ? own : seen[i] ? whenSeen : whenInferred;
     for (let k = 0; k < 3; ++k) colors[3 * i + k] = color[k] ** 2.2; // sRGB to linear
   }
   return new THREE.BufferAttribute(colors, 3);
@@ -34,8 +35,9 @@ const OUTLINE = new THREE.MeshBasicMaterial({ color: 0x6aa8ff, side: THREE.BackS
 const BOX = new THREE.BoxGeometry(1, 1, 1);
 
 export class ObjectMesh {
-  constructor(id) {
+  constructor(id, isSecond = false) {
     this.id = id;
+    this.isSecond = isSecond; // of the method beside the main one
     this.group = new THREE.Group();
     this.group.matrixAutoUpdate = false;
     this.mesh = new THREE.Mesh(new THREE.BufferGeometry(), MESH);
@@ -67,11 +69,34 @@ export class ObjectMesh {
   }
 
   color(mode) {
-    this.mesh.geometry.setAttribute("color", vertexColors(mode, this.id, this.decoded));
+    this.mesh.geometry.setAttribute("color", vertexColors(mode, this));
   }
 
   dispose() {
     this.mesh.geometry.dispose();
+  }
+}
+
+/** Brings the meshes by id to what a scene's objects are: new ones come into `parent`, those that are gone leave it. */
+export function updateMeshes(meshes, parent, objects, topologies, mode, isSecond) {
+  const present = new Set();
+  for (const object of objects) {
+    present.add(object.id);
+    let shown = meshes.get(object.id);
+    if (!shown) {
+      shown = new ObjectMesh(object.id, isSecond);
+      meshes.set(object.id, shown);
+      parent.add(shown.group);
+    }
+    shown.update(object, topologies.get(object.vertices.topologyHash), mode);
+    shown.name = object.className;
+    shown.method = object.method;
+  }
+  for (const [id, shown] of meshes) {
+    if (present.has(id)) continue;
+    parent.remove(shown.group);
+    shown.dispose();
+    meshes.delete(id);
   }
 }
 

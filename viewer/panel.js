@@ -1,13 +1,8 @@
-// The panel beside the picture: lists and figures. Text only ever enters as text.
-import { INFERRED, SEEN, colorOfId, css, ramp } from "./colors.js";
+// The panel beside the picture: lists and figures.
+import { INFERRED, SECOND_INFERRED, SECOND_SEEN, SEEN, colorOfId, css, ramp } from "./colors.js";
+import { energyCurve } from "./curve.js";
+import { element } from "./element.js";
 import { SIGMA_FULL_M } from "./objects.js";
-
-export function element(tag, { text, ...properties } = {}, ...children) {
-  const made = Object.assign(document.createElement(tag), properties);
-  if (text !== undefined) made.textContent = text;
-  made.append(...children);
-  return made;
-}
 
 const $ = (id) => document.getElementById(id);
 const mm = (metres) => (1000 * metres).toFixed(metres < 0.01 ? 1 : 0);
@@ -25,9 +20,10 @@ function bars(rows, full) {
   return grid;
 }
 
-function figures(pairs) {
-  const list = element("dl", { className: "figures" });
-  for (const [name, value] of pairs) list.append(element("dt", { text: name }), element("dd", { text: value }));
+/** Rows of a name and a value, or a value for each of two methods. */
+function figures(rows) {
+  const list = element("dl", { className: rows[0].length > 2 ? "figures two" : "figures" });
+  for (const [name, ...values] of rows) list.append(element("dt", { text: name }), ...values.map((text) => element("dd", { text })));
   return list;
 }
 
@@ -60,44 +56,59 @@ export function showObjects(scene, selected, onPick) {
   else list.setAttribute("aria-activedescendant", `object-${selected}`);
 }
 
-export function showDetails(object, decoded) {
-  const box = $("details");
-  box.hidden = !object;
-  if (!object) return;
-  const classes = Object.entries(object.classProbabilities).sort((a, b) => b[1] - a[1]).slice(0, 5);
+/** What is said of one method's fit: [name, value]. */
+function fitFigures({ object, decoded }) {
   const sigmas = decoded ? [...decoded.sigmas].sort((a, b) => a - b) : [];
   const seen = decoded ? decoded.seen.reduce((sum, one) => sum + one, 0) / Math.max(1, decoded.count) : 0;
-  const best = object.grasps[0], evidence = object.evidence;
+  const { evidence } = object;
   const size = [object.extentsM.x, object.extentsM.y, object.extentsM.z].map(mm).join(" × ");
-  const pairs = [
+  return [
     ["Method", object.method], ["Size", `${size} mm`], ["Volume, filled", `${(1000 * object.volumeFilledM3).toFixed(3)} l`], ["Volume, material", `${(1000 * object.volumeMaterialM3).toFixed(3)} l`],
     ["Surface seen", percent(seen)], ["Median sigma", sigmas.length ? `${mm(sigmas[sigmas.length >> 1])} mm` : "–"], ["RMS to the points", `${(1000 * evidence.rmsM).toFixed(1)} mm`],
     ["Silhouette IoU", evidence.silhouetteIou.toFixed(2)], ["Fit similarity", evidence.fitSimilarity.toFixed(2)], ["Mesh", `${object.vertices.count} vertices, ${object.closed ? "closed" : "OPEN"}`],
+    ["Iterations", `${object.iterations}${object.converged ? "" : ", not settled"}`],
   ];
+}
+
+/** Of the picked object ({object, decoded}), with what a second method made of it where there is one. */
+export function showDetails(picked, second) {
+  const box = $("details");
+  box.hidden = !picked;
+  if (!picked) return;
+  const { object } = picked;
+  const classes = Object.entries(object.classProbabilities).sort((a, b) => b[1] - a[1]).slice(0, 5);
+  const best = object.grasps[0];
   const grasp = best
     ? [["Width", `${mm(best.widthM)} mm`], ["Epsilon", best.epsilon.toFixed(3)], ["P(force closure)", percent(best.pForceClosure)], ["Contacts seen", best.visibility], ["Clearance", `${mm(best.collisionMarginM)} mm`], ["Advice", best.abstain ? "abstain: too uncertain" : "execute"]]
     : [["None", object.noGraspReason.replaceAll("_", " ")]];
+  let pairs = fitFigures(picked);
+  if (second) {
+    const others = fitFigures(second);
+    pairs = pairs.map((row, i) => [...row, others[i][1]]);
+  }
   box.replaceChildren(
     element("h2", { text: `${object.className} #${object.id}` }),
     bars(classes.map(([name, p]) => ({ name, value: p, text: percent(p), color: css(colorOfId(object.id)) })), 1),
     element("h2", { text: "Fit" }), figures(pairs),
+    element("h2", { text: "Energy of the contour" }), energyCurve([{ object, color: css(SEEN) }, ...(second ? [{ object: second.object, color: css(SECOND_SEEN) }] : [])]),
     element("h2", { text: "Best grasp" }), figures(grasp));
 }
 
 const FRAME_BUDGET_MS = 33;
 
+/** `age_ms`: since the frame was taken; null: of a recording. */
 export function showStages(scene, age_ms) {
   const stages = Object.entries(scene.ms).filter(([name]) => name !== "total");
   const total = scene.ms.total ?? stages.reduce((sum, [, ms]) => sum + ms, 0);
   const rows = stages.sort((a, b) => b[1] - a[1]).map(([name, ms]) => ({ name: name.replaceAll("_", " "), value: ms, text: `${ms.toFixed(1)} ms`, color: ms > FRAME_BUDGET_MS ? "var(--inferred)" : undefined }));
   $("stages").replaceChildren(bars(rows, Math.max(FRAME_BUDGET_MS, total)));
-  $("total").textContent = `${total.toFixed(0)} ms · ${Math.max(0, age_ms).toFixed(0)} ms old`;
+  $("total").textContent = age_ms === null ? `${total.toFixed(0)} ms` : `${total.toFixed(0)} ms · ${Math.max(0, age_ms).toFixed(0)} ms old`;
 }
 
 export function showSensors(statuses) {
   $("sensors").replaceChildren(
     ...[...statuses.values()].map((status) => {
-      const isWell = status.state === "streaming" || status.state === "ended";
+      const isWell = ["streaming", "ended", "paused"].includes(status.state);
       const title = element("div", {}, element("b", { text: status.sensor }), document.createTextNode(" "), element("span", { text: status.state, className: isWell ? "" : "trouble" }));
       const pairs = [
         ["Frames, processed", `${status.fps.toFixed(1)} / ${status.scenesFps.toFixed(1)} per s`], ["Latency p50 / p99", `${status.latencyP50Ms.toFixed(0)} / ${status.latencyP99Ms.toFixed(0)} ms`],
@@ -110,24 +121,31 @@ export function showSensors(statuses) {
     }));
 }
 
-export function showLegend(mode) {
+/** `methods`: null, or {main, second, compare} where a second method's meshes are shown too. */
+export function showLegend(mode, methods) {
   const swatch = (color, text) => {
     const box = element("i");
     box.style.background = css(color);
     return element("span", {}, box, document.createTextNode(text));
   };
-  const legend = $("legend");
-  if (mode === "seen") legend.replaceChildren(swatch(SEEN, "seen"), swatch(INFERRED, "inferred"));
-  else if (mode === "sigma") {
+  const name = (text) => element("b", { text });
+  const scale = () => {
     const scale = element("span", { className: "ramp" });
     scale.style.background = `linear-gradient(90deg, ${[0, 0.25, 0.5, 0.75, 1].map((t) => css(ramp(t))).join(", ")})`;
-    legend.replaceChildren(element("span", { text: "sigma 0" }), scale, element("span", { text: `${mm(SIGMA_FULL_M)} mm` }));
-  } else legend.replaceChildren(element("span", { text: "a colour an object" }));
+    return [element("span", { text: "sigma 0" }), scale, element("span", { text: `${mm(SIGMA_FULL_M)} mm` })];
+  };
+  const key = (isSecond) => [swatch(isSecond ? SECOND_SEEN : SEEN, "seen"), swatch(isSecond ? SECOND_INFERRED : INFERRED, "inferred")];
+  const legend = $("legend");
+  if (mode === "seen" && methods) legend.replaceChildren(...(methods.compare === "beside" ? [name(methods.main), ...key(false)] : []), name(methods.second), ...key(true));
+  else {
+    const names = !methods ? [] : methods.compare === "beside" ? [name(`${methods.main}; labelled, to the right: ${methods.second}`)] : [name(methods.second)];
+    legend.replaceChildren(...names, ...(mode === "seen" ? key(false) : mode === "sigma" ? scale() : [element("span", { text: "a colour an object" })]));
+  }
 }
 
 export function showConnection(state) {
   const pill = $("connection");
-  pill.textContent = { live: "live", restarted: "live", lost: "no connection", connecting: "connecting", paused: "paused" }[state];
-  pill.className = `pill ${{ live: "live", restarted: "live", lost: "lost" }[state] ?? ""}`;
+  pill.textContent = { live: "live", restarted: "live", lost: "no connection", connecting: "connecting", paused: "paused", replay: "replay" }[state];
+  pill.className = `pill ${{ live: "live", restarted: "live", replay: "live", lost: "lost" }[state] ?? ""}`;
   $("notice").textContent = state === "lost" ? "gfpd does not answer. Trying again…" : state === "connecting" ? "Connecting…" : "";
 }

@@ -3,7 +3,8 @@ import * as THREE from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import { Cloud } from "./cloud.js";
 import { colorOfId } from "./colors.js";
-import { ObjectMesh, gripper, matrixOf, supportSurface } from "./objects.js";
+import { gripper, matrixOf, supportSurface, updateMeshes } from "./objects.js";
+import { SecondMethod } from "./second.js";
 
 const MAX_SHOWN_GRASPS = 5;
 const UP = new THREE.Vector3(0, 0, 1);
@@ -12,7 +13,7 @@ export class World {
   constructor(canvas, labels, onPick) {
     this.canvas = canvas;
     this.labels = labels;
-    this.options = { mesh: "seen", points: true, meshes: true, grasps: true, table: true, names: true };
+    this.options = { mesh: "seen", points: true, meshes: true, grasps: true, table: true, names: true, compare: "off" };
     this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true, powerPreference: "low-power" });
     this.renderer.setPixelRatio(Math.min(2, devicePixelRatio));
     this.scene = new THREE.Scene();
@@ -30,7 +31,8 @@ export class World {
     this.grasps = new THREE.Group();
     this.table = new THREE.Group();
     this.meshes = new Map();
-    this.sensor.add(this.cloud.points, this.grasps, this.table);
+    this.second = new SecondMethod();
+    this.sensor.add(this.cloud.points, this.grasps, this.table, this.second.group);
     this.controls = new OrbitControls(this.camera, canvas);
     this.controls.addEventListener("change", () => this.draw());
     this.level = new THREE.Quaternion(); // turns what the scene calls world so that the table is level
@@ -47,7 +49,7 @@ export class World {
       const at = new THREE.Vector2((2 * (event.clientX - box.left)) / box.width - 1, 1 - (2 * (event.clientY - box.top)) / box.height);
       const ray = new THREE.Raycaster();
       ray.setFromCamera(at, this.camera);
-      const hit = ray.intersectObjects([...this.meshes.values()].map(({ mesh }) => mesh), false)[0];
+      const hit = ray.intersectObjects([...this.shown()].map(({ mesh }) => mesh), false)[0];
       onPick(hit ? hit.object.userData.id : null);
     });
   }
@@ -81,30 +83,33 @@ export class World {
   setScene(scene, topologies, selected) {
     this.last = { scene, topologies, selected };
     this.placeSensor(scene);
-    const present = new Set();
-    for (const object of scene.objects) {
-      present.add(object.id);
-      let shown = this.meshes.get(object.id);
-      if (!shown) {
-        shown = new ObjectMesh(object.id);
-        this.meshes.set(object.id, shown);
-        this.sensor.add(shown.group);
-      }
-      shown.update(object, topologies.get(object.vertices.topologyHash), this.options.mesh);
-      shown.name = object.className;
-    }
-    for (const [id, shown] of this.meshes) {
-      if (present.has(id)) continue;
-      this.sensor.remove(shown.group);
-      shown.dispose();
-      this.meshes.delete(id);
-    }
+    updateMeshes(this.meshes, this.sensor, scene.objects, topologies, this.options.mesh, false);
     const supportOfCamera = scene.support ? matrixOf(scene.support.TCameraSupport).invert() : null;
     this.cloud.setObjects(scene.objects.map((object) => ({ box: object.bboxPx, color: colorOfId(object.id) })), supportOfCamera);
     this.replace(this.table, scene.support ? [supportSurface(scene.support)] : []);
     this.showChoice();
     if (!this.isAimed && scene.objects.length) this.aim();
     this.draw();
+  }
+
+  /** What another method made of the same objects; null: nothing. */
+  setSecond(scene, topologies) {
+    this.second.take(scene, topologies, this.options.mesh);
+    this.showChoice();
+  }
+
+  /** Off, beside or instead of the main method's meshes. */
+  setCompare(mode) {
+    this.options.compare = mode;
+    this.showChoice();
+    if (mode === "beside") this.aim();
+  }
+
+  /** The meshes that can be seen now, of both methods. */
+  *shown() {
+    if (!this.options.meshes) return;
+    if (this.options.compare !== "instead") yield* this.meshes.values();
+    if (this.options.compare !== "off") yield* this.second.meshes.values();
   }
 
   /** The world's z is the table's normal: what the scene calls world may be the camera's own frame. */
@@ -138,10 +143,12 @@ export class World {
     this.cloud.points.visible = options.points && Boolean(this.cloud.isCalibrated);
     this.table.visible = options.table;
     this.labels.hidden = !options.names;
-    for (const [id, shown] of this.meshes) {
-      shown.group.visible = options.meshes;
-      shown.outline.visible = id === last.selected;
+    const isShown = new Set(this.shown());
+    for (const shown of [...this.meshes.values(), ...this.second.meshes.values()]) {
+      shown.group.visible = isShown.has(shown);
+      shown.outline.visible = shown.id === last.selected;
     }
+    this.second.place(options.compare === "beside" ? this.meshes.values() : null, last.scene);
     const grippers = [];
     if (options.grasps)
       for (const object of last.scene.objects)
@@ -157,7 +164,7 @@ export class World {
 
   setMeshMode(mode) {
     this.options.mesh = mode;
-    for (const shown of this.meshes.values()) if (shown.topology) shown.color(mode);
+    for (const shown of [...this.meshes.values(), ...this.second.meshes.values()]) if (shown.topology) shown.color(mode);
     this.draw();
   }
 
@@ -165,7 +172,7 @@ export class World {
   aim() {
     this.sensor.updateMatrixWorld(true);
     const box = new THREE.Box3();
-    for (const shown of this.meshes.values()) {
+    for (const shown of this.shown()) {
       shown.group.updateMatrixWorld(true);
       if (shown.topology) box.expandByObject(shown.mesh);
     }
@@ -195,18 +202,18 @@ export class World {
   placeLabels() {
     const { clientWidth: width, clientHeight: height } = this.canvas;
     const wanted = [];
-    for (const [id, shown] of this.meshes) {
-      if (!shown.top || !this.options.meshes) continue;
+    for (const shown of this.shown()) {
+      if (!shown.top) continue;
       const at = shown.top.clone().applyMatrix4(shown.group.matrixWorld).project(this.camera);
       if (at.z > 1) continue;
-      wanted.push({ id, name: shown.name, x: (0.5 + 0.5 * at.x) * width, y: (0.5 - 0.5 * at.y) * height });
+      wanted.push({ shown, x: (0.5 + 0.5 * at.x) * width, y: (0.5 - 0.5 * at.y) * height });
     }
     while (this.labels.children.length < wanted.length) this.labels.append(document.createElement("span"));
     while (this.labels.children.length > wanted.length) this.labels.lastChild.remove();
-    wanted.forEach(({ id, name, x, y }, i) => {
+    wanted.forEach(({ shown, x, y }, i) => {
       const label = this.labels.children[i];
-      label.textContent = name;
-      label.className = id === this.last.selected ? "selected" : "";
+      label.textContent = shown.isSecond && shown.name === "unknown" ? `#${shown.id}` : shown.name; // methods without classes
+      label.className = `${shown.isSecond ? "second" : ""} ${shown.id === this.last.selected ? "selected" : ""}`;
       label.style.transform = `translate(-50%, -100%) translate(${x.toFixed(1)}px, ${y.toFixed(1)}px)`;
     });
   }

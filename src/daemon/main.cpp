@@ -64,8 +64,27 @@ class LiveLibrary {
   std::shared_ptr<const gfp::PrimitiveLibrary> library_ GFP_GUARDED_BY(mutex_);  ///< Shared with the frame under way.
 };
 
-gfp::DaemonParts parts(const LiveLibrary& live) {
-  return {gfp::make_source, [&live](const gfp::Frame& frame, const gfp::SceneMemory& memory, const gfp::PipelineOptions& options) {
+/// One recording has one time line; where several are played, or one in a process of its own, nobody steers them.
+bool is_steerable(const gfp::SensorConfig& sensor) { return sensor.driver == "replay" && sensor.input.ends_with(".mcap") && sensor.isolation == "none"; }
+
+std::shared_ptr<gfp::ReplayControl> playback_of(const gfp::DaemonOptions& options) {
+  const bool is_replay = options.view.enabled && options.sensors.size() == 1 && is_steerable(options.sensors[0]);
+  if (!is_replay) return nullptr;
+  auto playback = std::make_shared<gfp::ReplayControl>();
+  playback->hold_at_end();
+  return playback;
+}
+
+/// `playback`: of the recording that is played; may be empty.
+gfp::DaemonParts parts(const LiveLibrary& live, std::shared_ptr<gfp::ReplayControl> playback) {
+  return {[playback = std::move(playback)](gfp::SensorConfig sensor) {
+            if (playback && is_steerable(sensor)) {
+              sensor.replay.control = playback;
+              sensor.replay.recorded_time = true;
+            }
+            return gfp::make_source(sensor);
+          },
+          [&live](const gfp::Frame& frame, const gfp::SceneMemory& memory, const gfp::PipelineOptions& options) {
             const auto library = live.load();
             return gfp::process_frame(frame, memory, *library, options);
           },
@@ -109,8 +128,8 @@ void serve(gfp::Daemon& daemon, LiveLibrary& library, const Arguments& arguments
 }
 
 /// Robots live without a view: where it cannot be served, that is said and the daemon goes on.
-std::unique_ptr<gfp::View> start_view(const gfp::DaemonOptions& options, std::uint64_t session, gfp::Publisher& publisher) {
-  auto view = gfp::View::start(options.view, session);
+std::unique_ptr<gfp::View> start_view(const gfp::DaemonOptions& options, std::uint64_t session, gfp::Publisher& publisher, std::shared_ptr<gfp::ReplayControl> playback) {
+  auto view = gfp::View::start(options.view, session, std::move(playback));
   if (!view) return spdlog::warn("no view: {}", view.error().what), nullptr;
   publisher.mirror(&(*view)->inbox());
   spdlog::info("the view is at http://{}:{}/", options.view.address, (*view)->port());
@@ -140,14 +159,15 @@ int run(const Arguments& arguments) {
   }
   LiveLibrary library(std::move(*primitives));  // it outlives the daemon, whose pipeline reads it
   const std::uint64_t session = new_session();
+  const auto playback = playback_of(*options);
   std::unique_ptr<gfp::View> view;  // it outlives the daemon, whose threads put into it
-  auto daemon = gfp::Daemon::start(*options, parts(library), session);
+  auto daemon = gfp::Daemon::start(*options, parts(library, playback), session);
   if (!daemon) {
     spdlog::error("{}", daemon.error().what);
     return daemon.error().code == gfp::ErrorCode::kInvalidArgument ? gfp::kExitConfig : gfp::kExitUnavailable;
   }
   gfp::publish_log_to(&(*daemon)->publisher());
-  if (options->view.enabled) view = start_view(*options, session, (*daemon)->publisher());
+  if (options->view.enabled) view = start_view(*options, session, (*daemon)->publisher(), playback);
   spdlog::info("gfpd {} serves {} sensor(s)", gfp::version(), options->sensors.size());
   gfp::tell_service_manager("READY=1");
   serve(**daemon, library, arguments, signals);

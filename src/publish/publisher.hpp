@@ -47,8 +47,11 @@ class Publisher {
 
   void put(PeerReply reply) { inbox_.put(std::move(reply)); }
 
-  /// What another method made of a frame (`profile` is its name): goes to /gfp/shadow/<method>/, not to the mirror.
-  void put_shadow(ScenePtr scene, std::uint64_t dropped) { inbox_.put_shadow(std::move(scene), dropped); }
+  /// What another method made of a frame (`profile` is its name): goes to /gfp/shadow/<method>/.
+  void put_shadow(ScenePtr scene, std::uint64_t dropped) {
+    if (Inbox* other = mirror_.load()) other->put_shadow(scene, dropped);
+    inbox_.put_shadow(std::move(scene), dropped);
+  }
 
   /// Sends what waits and the daemon's last status, then closes the sockets (up to half a second for slow subscribers).
   void stop();

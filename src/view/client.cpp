@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <utility>
+
 namespace gfp::view {
 
 Result<void> Client::subscribe(std::uint32_t subscription, std::uint32_t channel) {
@@ -21,9 +23,14 @@ void Client::unsubscribe(std::uint32_t subscription) {
   channel_of_.erase(found);
 }
 
-void Client::send_text(std::string text) {
-  if (texts_.size() >= kMaxTexts) return;  // who does not read its answers gets no more of them
-  texts_.push_back(std::move(text));
+void Client::send_control(Outgoing message) {
+  if (controls_.size() >= kMaxControls) return;  // who does not read its answers gets no more of them
+  controls_.push_back(std::move(message));
+  wake_();
+}
+
+void Client::send_time(std::string message) {
+  time_ = std::move(message);
   wake_();
 }
 
@@ -39,11 +46,12 @@ void Client::send(ClientQueue::Class kind, std::uint32_t channel, const std::str
 }
 
 std::optional<Client::Outgoing> Client::take() {
-  if (!texts_.empty()) {
-    Outgoing text{true, std::move(texts_.front()), nullptr};
-    texts_.pop_front();
-    return text;
+  if (!controls_.empty()) {
+    Outgoing first = std::move(controls_.front());
+    controls_.pop_front();
+    return first;
   }
+  if (time_) return Outgoing{false, *std::exchange(time_, std::nullopt), nullptr};
   auto message = queue_.take();
   if (!message) return std::nullopt;
   return Outgoing{false, message_header(message->subscription, message->log_time_ns), std::move(message->payload)};

@@ -14,12 +14,12 @@ std::uint64_t log_time(Nanoseconds stamp) { return static_cast<std::uint64_t>(st
 
 }  // namespace
 
-Hub::Hub(std::string name, std::uint64_t session) : name_(std::move(name)), session_(session) {
+Hub::Hub(std::string name, std::uint64_t session, std::shared_ptr<ReplayControl> playback) : name_(std::move(name)), session_(session), playback_(std::move(playback)) {
   for (const Stream stream : {Stream::kScene, Stream::kMesh, Stream::kMarkers, Stream::kStatus, Stream::kLog}) channel_for(stream, "");
 }
 
-Hub::Entry& Hub::channel_for(Stream stream, const std::string& sensor) {
-  const auto [place, is_new] = channels_.try_emplace({stream, sensor});
+Hub::Entry& Hub::channel_for(Stream stream, const std::string& name) {
+  const auto [place, is_new] = channels_.try_emplace({stream, name});
   Entry& entry = place->second;
   if (!is_new) return entry;
   struct Kind {
@@ -33,15 +33,16 @@ Hub::Entry& Hub::channel_for(Stream stream, const std::string& sensor) {
       case Stream::kMarkers: return {"/gfp/markers/", foxglove::SceneUpdate::descriptor()};
       case Stream::kStatus: return {std::string(wire::kStatusPrefix), v1::SensorStatus::descriptor()};
       case Stream::kLog: return {std::string(wire::kLogTopic), foxglove::Log::descriptor()};
-      case Stream::kDepth: return {wire::sensor_topic(sensor, "depth"), foxglove::RawImage::descriptor()};
-      case Stream::kColor: return {wire::sensor_topic(sensor, "color"), foxglove::RawImage::descriptor()};
-      case Stream::kCamera: return {wire::sensor_topic(sensor, "camera"), foxglove::CameraCalibration::descriptor()};
-      case Stream::kCloud: return {wire::sensor_topic(sensor, "cloud"), foxglove::PointCloud::descriptor()};
-      case Stream::kTransforms: return {wire::sensor_topic(sensor, "transforms"), foxglove::FrameTransforms::descriptor()};
+      case Stream::kDepth: return {wire::sensor_topic(name, "depth"), foxglove::RawImage::descriptor()};
+      case Stream::kColor: return {wire::sensor_topic(name, "color"), foxglove::RawImage::descriptor()};
+      case Stream::kCamera: return {wire::sensor_topic(name, "camera"), foxglove::CameraCalibration::descriptor()};
+      case Stream::kCloud: return {wire::sensor_topic(name, "cloud"), foxglove::PointCloud::descriptor()};
+      case Stream::kShadow: return {wire::shadow_topic(name), v1::Scene::descriptor()};
+      case Stream::kTransforms: return {wire::sensor_topic(name, "transforms"), foxglove::FrameTransforms::descriptor()};
     }
     return {};
   }();
-  entry = {stream, sensor, {static_cast<std::uint32_t>(channels_.size()), kind.topic, kind.schema->full_name(), wire::descriptor_set(*kind.schema)}};
+  entry = {stream, name, {static_cast<std::uint32_t>(channels_.size()), kind.topic, kind.schema->full_name(), wire::descriptor_set(*kind.schema)}};
   by_id_[entry.channel.id] = &entry;
   for (Client* client : clients_) client->send_text(advertise(std::span(&entry.channel, 1)));
   return entry;
@@ -49,7 +50,12 @@ Hub::Entry& Hub::channel_for(Stream stream, const std::string& sensor) {
 
 void Hub::join(Client& client) {
   clients_.insert(&client);
-  client.send_text(server_info(name_, session_));
+  std::optional<PlaybackRange> range;
+  if (playback_) {
+    const ReplayControl::State state = playback_->state();
+    range = {state.begin, state.begin + state.duration, state.paused, state.speed};
+  }
+  client.send_text(server_info(name_, session_, range));
   std::vector<Channel> all;
   for (const auto& [id, entry] : by_id_) all.push_back(entry->channel);
   client.send_text(advertise(all));
@@ -78,13 +84,55 @@ void Hub::heard(Client& client, std::string_view text) {
   }
 }
 
+void Hub::heard_binary(Client& client, std::string_view bytes) {
+  const auto message = parse_client_binary(bytes);
+  if (!message) return client.send_text(status(StatusLevel::kError, message.error().what));
+  if (!playback_) return client.send_text(status(StatusLevel::kError, "playback: there is no recording to steer"));
+  steer(client, std::get<PlaybackRequest>(*message));
+}
+
+/// What one client turns, all learn who have ever asked for something themselves: others do not know the message.
+void Hub::steer(Client& client, const PlaybackRequest& request) {
+  client.steers_playback = true;
+  playback_->set_speed(request.speed);
+  if (request.play) playback_->resume();
+  else if (!playback_->state().paused) playback_->pause();
+  if (request.seek) playback_->seek(*request.seek - playback_->state().begin);  // after a pause: it shows its frame
+  PlaybackState now = playback_now();
+  now.did_seek = request.seek.has_value();
+  told_ = now;
+  for (Client* other : clients_)
+    if (other->steers_playback && other != &client) other->send_binary(playback_state(now));
+  now.request_id = request.id;
+  client.send_binary(playback_state(now));
+}
+
+PlaybackState Hub::playback_now() const {
+  const ReplayControl::State state = playback_->state();
+  const PlaybackStatus status = state.ended ? PlaybackStatus::kEnded : state.paused ? PlaybackStatus::kPaused : PlaybackStatus::kPlaying;
+  return {status, state.begin + state.position, state.speed, false, {}};
+}
+
+/// The time with every frame; the state when it has changed by itself: at the end, by another's hand.
+void Hub::tell_playback() {
+  const PlaybackState now = playback_now();
+  const bool is_news = !told_ || told_->status != now.status || told_->speed != now.speed;
+  told_ = now;
+  for (Client* client : clients_) {
+    client->send_time(time_message(now.time));
+    if (is_news && client->steers_playback) client->send_binary(playback_state(now));
+  }
+}
+
 bool Hub::is_wanted(const Entry& entry) const {
   return std::any_of(clients_.begin(), clients_.end(), [&](const Client* client) { return client->wants(entry.channel.id); });
 }
 
 void Hub::take(Inbox::Content content) {
+  if (playback_ && (!content.frames.empty() || !content.statuses.empty())) tell_playback();
   for (const auto& [sensor, frame] : content.frames) take_frame(frame.value);
   for (const auto& [sensor, scene] : content.scenes) take_scene(scene.value);
+  for (const auto& [sensor, shadow] : content.shadows) take_shadow(shadow.value);
   for (auto& [sensor, status] : content.statuses) {
     send_status(channel_for(Stream::kStatus, ""), status, nullptr);
     statuses_[sensor] = std::move(status);
@@ -106,14 +154,24 @@ void Hub::take_frame(const FramePtr& frame) {
 }
 
 void Hub::take_scene(const ScenePtr& scene) {
-  for (const SceneObject& object : scene->objects) {
+  take_topologies(*scene);
+  scenes_[scene->sensor] = scene;
+  for (const Stream stream : {Stream::kScene, Stream::kMarkers}) send_scene_stream(channel_for(stream, ""), *scene, nullptr);
+}
+
+void Hub::take_shadow(const ScenePtr& shadow) {
+  take_topologies(*shadow);
+  shadows_[shadow->sensor] = shadow;
+  send_scene_stream(channel_for(Stream::kShadow, shadow->profile), *shadow, nullptr);
+}
+
+void Hub::take_topologies(const Scene& scene) {
+  for (const SceneObject& object : scene.objects) {
     if (!object.model.topology) continue;
     const auto [place, is_new] = topologies_.try_emplace(object.model.topology->hash, KnownTopology{object.model.topology, object.model.vertices.size()});
     if (is_new) send_topology(channel_for(Stream::kMesh, ""), place->first, place->second, nullptr);
   }
   if (topologies_.size() > kMaxTopologies) topologies_.clear();  // those in use come again with the next scene
-  scenes_[scene->sensor] = scene;
-  for (const Stream stream : {Stream::kScene, Stream::kMarkers}) send_scene_stream(channel_for(stream, ""), *scene, nullptr);
 }
 
 void Hub::send_last(Client& client, const Entry& entry) {
@@ -125,12 +183,16 @@ void Hub::send_last(Client& client, const Entry& entry) {
     case Stream::kMarkers:
       for (const auto& [sensor, scene] : scenes_) send_scene_stream(entry, *scene, &client);
       return;
+    case Stream::kShadow:
+      for (const auto& [sensor, shadow] : shadows_)
+        if (shadow->profile == entry.name) send_scene_stream(entry, *shadow, &client);
+      return;
     case Stream::kStatus:
       for (const auto& [sensor, status] : statuses_) send_status(entry, status, &client);
       return;
     case Stream::kLog: return;
     default:
-      if (const auto frame = frames_.find(entry.sensor); frame != frames_.end()) send_frame_stream(entry, *frame->second, &client);
+      if (const auto frame = frames_.find(entry.name); frame != frames_.end()) send_frame_stream(entry, *frame->second, &client);
   }
 }
 

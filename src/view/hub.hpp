@@ -1,11 +1,14 @@
 #pragma once
 
 #include <map>
+#include <memory>
+#include <optional>
 #include <set>
 #include <string>
 #include <string_view>
 #include <utility>
 
+#include "gfp/frame/replay_control.hpp"
 #include "publish/inbox.hpp"
 #include "view/client.hpp"
 
@@ -15,7 +18,8 @@ namespace gfp::view {
 /// The view's thread only.
 class Hub {
  public:
-  Hub(std::string name, std::uint64_t session);
+  /// `playback`: the knobs of the recording that is played; empty: nothing is offered to be steered.
+  Hub(std::string name, std::uint64_t session, std::shared_ptr<ReplayControl> playback = {});
 
   void join(Client& client);   ///< Says who we are and what there is.
   void leave(Client& client);
@@ -23,14 +27,15 @@ class Hub {
 
   /// One text message of a client. What is wrong with it, it is told.
   void heard(Client& client, std::string_view text);
+  void heard_binary(Client& client, std::string_view bytes);
 
   void take(Inbox::Content content);
 
  private:
-  enum class Stream : std::uint8_t { kScene, kMesh, kMarkers, kStatus, kLog, kDepth, kColor, kCamera, kCloud, kTransforms };
+  enum class Stream : std::uint8_t { kScene, kMesh, kMarkers, kStatus, kLog, kDepth, kColor, kCamera, kCloud, kTransforms, kShadow };
   struct Entry {
     Stream stream = Stream::kScene;
-    std::string sensor;  ///< Empty where the stream is of all sensors.
+    std::string name;  ///< Of the sensor, of a shadow the method; empty where the stream is of all.
     Channel channel;
   };
   struct KnownTopology {
@@ -38,11 +43,16 @@ class Hub {
     std::size_t vertices = 0;
   };
 
-  Entry& channel_for(Stream stream, const std::string& sensor);
+  Entry& channel_for(Stream stream, const std::string& name);
   bool is_wanted(const Entry& entry) const;
 
+  void steer(Client& client, const PlaybackRequest& request);
+  void tell_playback();
+  PlaybackState playback_now() const;
   void take_frame(const FramePtr& frame);
   void take_scene(const ScenePtr& scene);
+  void take_shadow(const ScenePtr& shadow);
+  void take_topologies(const Scene& scene);
   void send_last(Client& client, const Entry& entry);
   void send_frame_stream(const Entry& entry, const Frame& frame, Client* only);
   void send_scene_stream(const Entry& entry, const Scene& scene, Client* only);
@@ -54,11 +64,14 @@ class Hub {
 
   const std::string name_;
   const std::uint64_t session_;
+  const std::shared_ptr<ReplayControl> playback_;
+  std::optional<PlaybackState> told_;  ///< To those who steer.
   std::set<Client*> clients_;
   std::map<std::pair<Stream, std::string>, Entry> channels_;
   std::map<std::uint32_t, const Entry*> by_id_;
   std::map<std::string, FramePtr> frames_;   ///< The last one of each sensor, as those below.
   std::map<std::string, ScenePtr> scenes_;
+  std::map<std::string, ScenePtr> shadows_;
   std::map<std::string, v1::SensorStatus> statuses_;
   std::map<std::uint64_t, KnownTopology> topologies_;
 };

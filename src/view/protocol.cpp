@@ -3,12 +3,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
+#include <cstdint>
 #include <nlohmann/json.hpp>
 
 namespace gfp::view {
 namespace {
 
 using Json = nlohmann::json;
+
+constexpr std::int64_t kPerSecond = 1'000'000'000;
+enum Opcode : std::uint8_t { kMessageData = 1, kTime = 2, kPlaybackState = 5 };  // of the server
+enum ClientOpcode : std::uint8_t { kPlaybackControl = 3 };
 
 std::string base64(std::string_view bytes) {
   constexpr std::string_view kAlphabet = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
@@ -41,6 +47,39 @@ std::uint32_t id_of(const Json& value) {
   return static_cast<std::uint32_t>(id);
 }
 
+Json json_time(Nanoseconds time) { return {{"sec", time.count() / kPerSecond}, {"nsec", time.count() % kPerSecond}}; }
+
+/// Little-endian, whatever the machine; the bytes are there.
+template <class Number>
+Number take(std::string_view& bytes) {
+  std::uint64_t bits = 0;
+  for (std::size_t i = 0; i < sizeof(Number); ++i) bits |= static_cast<std::uint64_t>(static_cast<std::uint8_t>(bytes[i])) << (8 * i);
+  bytes.remove_prefix(sizeof(Number));
+  return static_cast<Number>(bits);
+}
+
+void put(std::string& bytes, std::uint64_t value, std::size_t count) {
+  for (std::size_t i = 0; i < count; ++i) bytes.push_back(static_cast<char>(value >> (8 * i) & 0xFFU));
+}
+
+Result<PlaybackRequest> playback_request(std::string_view bytes) {
+  constexpr std::size_t kFixed = 1 + 4 + 1 + 8 + 4;
+  const auto corrupt = [](std::string what) { return failure(ErrorCode::kCorruptData, "a playback request " + what); };
+  if (bytes.size() < kFixed) return corrupt(fmt::format("of {} bytes, expected at least {}", bytes.size(), kFixed));
+  const auto command = take<std::uint8_t>(bytes);
+  const auto speed = std::bit_cast<float>(take<std::uint32_t>(bytes));
+  const auto has_seek = take<std::uint8_t>(bytes);
+  const auto seek_ns = take<std::uint64_t>(bytes);
+  const auto id_length = take<std::uint32_t>(bytes);
+  if (command > 1) return corrupt(fmt::format("with command {}, expected 0 (play) or 1 (pause)", command));
+  if (!(speed > 0 && speed <= 100)) return corrupt(fmt::format("with speed {}, expected above 0 and at most 100", speed));
+  if (has_seek > 1 || seek_ns > static_cast<std::uint64_t>(INT64_MAX)) return corrupt(fmt::format("to seek {} ({})", seek_ns, has_seek));
+  if (id_length > kMaxRequestIdBytes || id_length != bytes.size()) return corrupt(fmt::format("with an id of {} bytes, {} follow, at most {} are read", id_length, bytes.size(), kMaxRequestIdBytes));
+  PlaybackRequest request{command == 0, speed, std::nullopt, std::string(bytes)};
+  if (has_seek == 1) request.seek = Nanoseconds(static_cast<std::int64_t>(seek_ns));
+  return request;
+}
+
 ClientMessage message_of(const Json& message) {
   const std::string op = message.at("op").get<std::string>();
   if (op == "subscribe") {
@@ -68,8 +107,15 @@ std::string_view choose_subprotocol(std::string_view offered) {
   return {};
 }
 
-std::string server_info(std::string_view name, std::uint64_t session) {
-  return Json{{"op", "serverInfo"}, {"name", name}, {"capabilities", Json::array()}, {"supportedEncodings", {"protobuf"}}, {"metadata", Json::object()}, {"sessionId", fmt::format("{:016x}", session)}}.dump();
+std::string server_info(std::string_view name, std::uint64_t session, const std::optional<PlaybackRange>& playback) {
+  Json info{{"op", "serverInfo"}, {"name", name}, {"capabilities", Json::array()}, {"supportedEncodings", {"protobuf"}}, {"metadata", Json::object()}, {"sessionId", fmt::format("{:016x}", session)}};
+  if (playback) {
+    info["capabilities"] = {"time", "playbackControl"};
+    info["dataStartTime"] = json_time(playback->begin);
+    info["dataEndTime"] = json_time(playback->end);
+    info["metadata"] = {{"playback", playback->is_paused ? "paused" : "playing"}, {"speed", fmt::format("{}", playback->speed)}};
+  }
+  return info.dump();
 }
 
 std::string advertise(std::span<const Channel> channels) {
@@ -92,11 +138,34 @@ Result<ClientMessage> parse_client_message(std::string_view text) {
   }
 }
 
+Result<ClientBinary> parse_client_binary(std::string_view bytes) {
+  if (bytes.empty()) return failure(ErrorCode::kCorruptData, "a binary message without an opcode");
+  const auto opcode = take<std::uint8_t>(bytes);
+  if (opcode == kPlaybackControl) return playback_request(bytes);
+  return failure(ErrorCode::kCorruptData, fmt::format("opcode {}: not offered by this server", opcode));
+}
+
 std::string message_header(std::uint32_t subscription, std::uint64_t log_time_ns) {
-  std::string header(13, '\1');
-  for (std::size_t i = 0; i < 4; ++i) header[1 + i] = static_cast<char>(subscription >> (8 * i) & 0xFFU);
-  for (std::size_t i = 0; i < 8; ++i) header[5 + i] = static_cast<char>(log_time_ns >> (8 * i) & 0xFFU);
+  std::string header(1, static_cast<char>(kMessageData));
+  put(header, subscription, 4);
+  put(header, log_time_ns, 8);
   return header;
+}
+
+std::string playback_state(const PlaybackState& state) {
+  std::string message(1, static_cast<char>(kPlaybackState));
+  put(message, static_cast<std::uint64_t>(state.status), 1);
+  put(message, static_cast<std::uint64_t>(state.time.count()), 8);
+  put(message, std::bit_cast<std::uint32_t>(static_cast<float>(state.speed)), 4);
+  put(message, state.did_seek ? 1 : 0, 1);
+  put(message, state.request_id.size(), 4);
+  return message + state.request_id;
+}
+
+std::string time_message(Nanoseconds time) {
+  std::string message(1, static_cast<char>(kTime));
+  put(message, static_cast<std::uint64_t>(time.count()), 8);
+  return message;
 }
 
 }  // namespace gfp::view

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -8,6 +9,7 @@
 #include <vector>
 
 #include "gfp/core/error.hpp"
+#include "gfp/core/time.hpp"
 
 namespace gfp::view {
 
@@ -27,7 +29,15 @@ struct Channel {
   std::string schema;       ///< FileDescriptorSet that defines it.
 };
 
-std::string server_info(std::string_view name, std::uint64_t session);
+/// Of a recording that is played and may be steered: what of it there is, CLOCK_REALTIME, and how it is played as the client comes.
+struct PlaybackRange {
+  Nanoseconds begin{}, end{};
+  bool is_paused = false;
+  double speed = 1;
+};
+
+/// With a range the capabilities `time` and `playbackControl` are offered; our page finds the present state in `metadata`.
+std::string server_info(std::string_view name, std::uint64_t session, const std::optional<PlaybackRange>& playback = {});
 std::string advertise(std::span<const Channel> channels);
 
 enum class StatusLevel { kInfo = 0, kWarning = 1, kError = 2 };
@@ -47,6 +57,33 @@ struct Other {
   std::string op;  ///< Well-formed, but nothing that we offer.
 };
 using ClientMessage = std::variant<Subscribe, Unsubscribe, Other>;
+
+/// What a client's player bar asks of a replay.
+struct PlaybackRequest {
+  bool play = false;                 ///< Else: pause.
+  double speed = 1;                  ///< Above 0, at most 100.
+  std::optional<Nanoseconds> seek;   ///< CLOCK_REALTIME of recording.
+  std::string id;                    ///< The client's own; the answer carries it back.
+};
+using ClientBinary = std::variant<PlaybackRequest>;
+
+inline constexpr std::size_t kMaxRequestIdBytes = 256;
+
+/// Errors: kCorruptData (too short, an opcode that nobody offered, numbers out of range), kTooLarge.
+Result<ClientBinary> parse_client_binary(std::string_view bytes);
+
+enum class PlaybackStatus : std::uint8_t { kPlaying = 0, kPaused = 1, kBuffering = 2, kEnded = 3 };
+struct PlaybackState {
+  PlaybackStatus status = PlaybackStatus::kPlaying;
+  Nanoseconds time{};     ///< CLOCK_REALTIME of recording.
+  double speed = 1;
+  bool did_seek = false;
+  std::string request_id; ///< Of the request that it answers; else empty.
+};
+
+/// Binary messages of the server: opcode 5, and opcode 2 (the time that a replay has come to).
+std::string playback_state(const PlaybackState& state);
+std::string time_message(Nanoseconds time);
 
 inline constexpr std::size_t kMaxClientMessageBytes = 64 * 1024;
 inline constexpr std::size_t kMaxItems = 1000;  ///< Subscriptions in one message.

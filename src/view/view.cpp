@@ -82,7 +82,9 @@ class Socket : public std::enable_shared_from_this<Socket> {
   void read() {
     socket_.async_read(received_, [self = shared_from_this()](error_code error, std::size_t) {
       if (error) return self->leave();
-      if (self->socket_.got_text()) self->shared_.hub.heard(self->client_, beast::buffers_to_string(self->received_.data()));
+      const std::string message = beast::buffers_to_string(self->received_.data());
+      if (self->socket_.got_text()) self->shared_.hub.heard(self->client_, message);
+      else self->shared_.hub.heard_binary(self->client_, message);
       self->received_.consume(self->received_.size());
       self->read();
     });
@@ -200,8 +202,8 @@ class Request : public std::enable_shared_from_this<Request> {
 
 class View::Server {
  public:
-  Server(const ViewOptions& options, std::uint64_t session, Inbox& inbox)
-      : shared_{options, Hub(fmt::format("gfpd {}", version()), session), {}, 0}, inbox_(inbox), wake_(context_, dup(inbox.wake_file())), acceptor_(context_), pause_(context_) {}
+  Server(const ViewOptions& options, std::uint64_t session, Inbox& inbox, std::shared_ptr<ReplayControl> playback)
+      : shared_{options, Hub(fmt::format("gfpd {}", version()), session, std::move(playback)), {}, 0}, inbox_(inbox), wake_(context_, dup(inbox.wake_file())), acceptor_(context_), pause_(context_) {}
   ~Server() {
     asio::post(context_, [this] {
       for (Socket* socket : shared_.sockets) socket->close();
@@ -274,10 +276,10 @@ class View::Server {
 View::View() = default;
 View::~View() = default;
 
-Result<std::unique_ptr<View>> View::start(const ViewOptions& options, std::uint64_t session) {
+Result<std::unique_ptr<View>> View::start(const ViewOptions& options, std::uint64_t session, std::shared_ptr<ReplayControl> playback) {
   if (auto valid = view::validate(options); !valid) return tl::unexpected(valid.error());
   std::unique_ptr<View> made(new View());
-  made->server_ = std::make_unique<Server>(options, session, made->inbox_);
+  made->server_ = std::make_unique<Server>(options, session, made->inbox_, std::move(playback));
   if (auto listening = made->server_->listen(); !listening) return tl::unexpected(listening.error());
   return made;
 }

@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "gfp/core/error.hpp"
+#include "gfp/frame/replay_control.hpp"
 #include "publish/inbox.hpp"
 #include "view/view_options.hpp"
 
@@ -15,8 +16,9 @@ namespace gfp {
 /// Encodes only what some client has subscribed to.
 class View {
  public:
+  /// `playback`: the knobs of the one recording that is played, for clients to turn; empty: none.
   /// Errors: kInvalidArgument (options), kIo (the port is taken, no such address).
-  static Result<std::unique_ptr<View>> start(const ViewOptions& options, std::uint64_t session);
+  static Result<std::unique_ptr<View>> start(const ViewOptions& options, std::uint64_t session, std::shared_ptr<ReplayControl> playback = {});
   ~View();  ///< Closes all connections.
 
   Inbox& inbox() { return inbox_; }  ///< Where values are put.

@@ -1,26 +1,11 @@
 // The page in a real browser: what it shows is what the daemon publishes, by mouse and by keyboard, on a laptop and on a tablet.
 //   node browser_test.mjs PORT PICTURES_DIR      leaves its screenshots there, for eyes
 import assert from "node:assert/strict";
-import { mkdirSync, mkdtempSync } from "node:fs";
-import { tmpdir } from "node:os";
 import { join } from "node:path";
-import { chromium } from "playwright-core";
+import { openPage } from "./browser.mjs";
 
 const [port, pictures] = process.argv.slice(2);
-mkdirSync(pictures, { recursive: true });
-const FLAGS = ["--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"];
-const context = await chromium.launchPersistentContext(mkdtempSync(join(tmpdir(), "gfp-browser-")), { executablePath: "/usr/bin/chromium", args: FLAGS, viewport: { width: 1280, height: 800 } });
-context.setDefaultTimeout(120_000); // a busy machine without a graphics card; every wait ends with what it waits for
-const page = context.pages()[0] ?? (await context.newPage());
-const errors = [];
-page.on("pageerror", (error) => errors.push(String(error)));
-page.on("console", (message) => message.type() === "error" && errors.push(message.text()));
-const foreign = [];
-page.on("request", (request) => !request.url().startsWith(`http://127.0.0.1:${port}/`) && !request.url().startsWith("data:") && foreign.push(request.url()));
-
-/** Waits until a picture was drawn after now. */
-const drawn = () => page.evaluate(() => { const { world } = window.gfp; const before = world.pictures; world.draw(); return new Promise((resolve) => { const look = () => (world.pictures > before ? resolve() : setTimeout(look, 20)); look(); }); });
-const picture = async (name) => { await drawn(); await page.screenshot({ path: join(pictures, `${name}.png`) }); };
+const { page, drawn, picture, close } = await openPage(port, pictures);
 /** Share of the canvas that is not its background. */
 const painted = () => page.evaluate(() => {
   const { world } = window.gfp, gl = world.renderer.getContext();
@@ -33,7 +18,6 @@ const painted = () => page.evaluate(() => {
 });
 const selected = () => page.evaluate(() => (window.gfp.state.selected === null ? null : String(window.gfp.state.selected)));
 
-await page.goto(`http://127.0.0.1:${port}/`);
 await page.waitForFunction(() => window.gfp?.state.scene?.objects.length >= 2 && [...window.gfp.world.meshes.values()].every((shown) => shown.topology) && window.gfp.world.cloud.points.visible);
 await page.keyboard.press("Space"); // paused: what follows is about one scene
 assert.equal(await page.locator("#pause").getAttribute("aria-pressed"), "true");
@@ -96,7 +80,37 @@ assert.ok(still <= 1, `${still} pictures in a second of nothing`);
 await page.keyboard.press("Space");
 const sequence = await page.evaluate(() => window.gfp.state.scene.header.sequence);
 await page.waitForFunction((before) => window.gfp.state.scene.header.sequence > before, sequence);
-assert.deepEqual(errors, []);
-assert.deepEqual(foreign, [], "the page asks others");
-await context.close();
-console.log("ok");
+
+// A second method beside the first one, and instead of it.
+assert.ok(await page.locator("#player").isHidden(), "a player bar without a recording");
+await page.setViewportSize({ width: 1280, height: 800 });
+await page.keyboard.press("c");
+await page.waitForFunction(() => window.gfp.state.second?.objects.length >= 1 && [...window.gfp.world.second.meshes.values()].every((shown) => shown.topology));
+await page.keyboard.press("Space");
+const second = await page.evaluate(() => String(window.gfp.state.second.objects[0].id));
+await page.locator(`#objects li[data-id="${second}"]`).click();
+await page.evaluate(() => window.gfp.world.aim());
+await picture("second_beside");
+assert.match(await page.locator("#legend").textContent(), /gfp_robustseeninferredsuperquadricseeninferred/);
+assert.match(await page.locator("#details").textContent(), /Methodgfp_robustsuperquadric.*Silhouette IoU[\d.]+[\d.]+/s);
+assert.ok((await page.locator("#labels span.second").count()) >= 1);
+const apart = await page.evaluate(() => {
+  const { world } = window.gfp;
+  return [...world.second.meshes].map(([id, shown]) => world.meshes.get(id)?.group.localToWorld(world.meshes.get(id).top.clone()).distanceTo(shown.group.localToWorld(shown.top.clone())));
+});
+assert.ok(apart.every((distance) => distance === undefined || distance > 0.15), `beside is ${apart} m away`);
+await page.keyboard.press("c");
+await picture("second_instead");
+assert.equal(await page.locator("#labels span.second").count(), await page.locator("#labels span").count());
+assert.doesNotMatch(await page.locator("#legend").textContent(), /gfp_robust/);
+await page.keyboard.press("c");
+await drawn();
+assert.equal(await page.locator("#labels span.second").count(), 0);
+
+// The energy curve of the picked object is what the scene says of it.
+const energies = await page.evaluate(() => window.gfp.state.scene.objects.find(({ id }) => id === window.gfp.state.selected).energies);
+if (energies.length > 1) assert.equal(await page.locator("#details .curve circle").count(), energies.length);
+else assert.match(await page.locator("#details").textContent(), /No contour ran/);
+await page.setViewportSize({ width: 1280, height: 1500 });
+await picture("figures");
+await close();

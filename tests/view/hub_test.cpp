@@ -22,6 +22,8 @@ struct Viewer {
   void read() {
     while (const auto next = client.take()) {
       if (next->is_text) heard(Json::parse(next->head));
+      else if (next->head[0] == '\2') times.push_back(next->head);
+      else if (next->head[0] == '\5') states.push_back(next->head);
       else payloads[topics.at(static_cast<std::uint8_t>(next->head[1]))].push_back(*next->payload);
     }
   }
@@ -38,6 +40,7 @@ struct Viewer {
   std::map<int, std::string> topics;
   std::map<std::string, std::vector<std::string>> payloads;
   std::vector<Json> statuses;
+  std::vector<std::string> times, states;  ///< Binary messages 2 and 5.
 
  private:
   void heard(const Json& message) {
@@ -73,6 +76,100 @@ T parsed(const std::string& payload) {
   T message;
   EXPECT_TRUE(message.ParseFromString(payload));
   return message;
+}
+
+/// A request as a player bar sends it.
+std::string playback_request(bool play, float speed, std::optional<std::uint64_t> seek_ns, const std::string& id) {
+  std::string bytes(19, '\0');
+  bytes[0] = '\3';
+  bytes[1] = play ? '\0' : '\1';
+  std::memcpy(&bytes[2], &speed, 4);
+  bytes[6] = seek_ns ? '\1' : '\0';
+  const std::uint64_t seek = seek_ns.value_or(0);
+  std::memcpy(&bytes[7], &seek, 8);
+  bytes[15] = static_cast<char>(id.size());
+  return bytes + id;
+}
+
+std::shared_ptr<ReplayControl> control_of_ten_seconds() {
+  auto control = std::make_shared<ReplayControl>();
+  control->begin(Nanoseconds(1'000'000'000'000), Nanoseconds(10'000'000'000), 1);
+  return control;
+}
+
+TEST(Hub, AReplayIsSteeredAndThoseWhoSteerLearnOfIt) {
+  const auto control = control_of_ten_seconds();
+  Hub hub("gfpd", 1, control);
+  Viewer one(hub), other(hub), spectator(hub);
+  hub.heard_binary(other.client, playback_request(true, 1, std::nullopt, "hello"));
+  hub.heard_binary(one.client, playback_request(false, 0.5F, 1'004'000'000'000U, "x"));
+  EXPECT_TRUE(control->state().paused);
+  EXPECT_EQ(control->state().speed, 0.5);
+  EXPECT_TRUE(control->wait_until_running(std::chrono::milliseconds(0))) << "paused, but the frame that was sought is shown";
+  EXPECT_FALSE(control->wait_until_running(std::chrono::milliseconds(0)));
+  EXPECT_EQ(control->take_seek(), Nanoseconds(4'000'000'000));
+  for (Viewer* viewer : {&one, &other, &spectator}) viewer->read();
+  ASSERT_EQ(one.states.size(), 1U);
+  EXPECT_EQ(one.states[0], playback_state({PlaybackStatus::kPaused, Nanoseconds(1'004'000'000'000), 0.5, true, "x"}));
+  ASSERT_EQ(other.states.size(), 2U);
+  EXPECT_EQ(other.states[0], playback_state({PlaybackStatus::kPlaying, Nanoseconds(1'000'000'000'000), 1, false, "hello"}));
+  EXPECT_EQ(other.states[1], playback_state({PlaybackStatus::kPaused, Nanoseconds(1'004'000'000'000), 0.5, true, ""}));
+  EXPECT_TRUE(spectator.states.empty()) << "who never asked does not know the message";
+  hub.heard_binary(one.client, playback_request(false, 0.5F, 1U, ""));  // before the beginning
+  EXPECT_EQ(control->take_seek(), Nanoseconds(0));
+}
+
+TEST(Hub, AReplayTellsItsTimeAndItsEnd) {
+  const auto control = control_of_ten_seconds();
+  Hub hub("gfpd", 1, control);
+  Viewer viewer(hub), spectator(hub);
+  hub.heard_binary(viewer.client, playback_request(true, 1, std::nullopt, ""));
+  for (int i = 1; i <= 3; ++i) {
+    control->played(Nanoseconds(i), false);
+    hub.take(of_frame());
+  }
+  for (Viewer* each : {&viewer, &spectator}) {
+    each->read();
+    EXPECT_EQ(each->times, std::vector<std::string>{time_message(Nanoseconds(1'000'000'000'003))}) << "the newest only";
+  }
+  EXPECT_EQ(viewer.states.size(), 1U);
+  control->played(Nanoseconds(3), true);
+  Inbox::Content content;
+  content.statuses["front"].set_sensor("front");
+  hub.take(std::move(content));
+  viewer.read();
+  ASSERT_EQ(viewer.states.size(), 2U);
+  EXPECT_EQ(viewer.states[1], playback_state({PlaybackStatus::kEnded, Nanoseconds(1'000'000'000'003), 1, false, ""}));
+}
+
+TEST(Hub, WithoutARecordingNothingIsSteered) {
+  Hub hub("gfpd", 1);
+  Viewer viewer(hub);
+  hub.heard_binary(viewer.client, playback_request(true, 1, std::nullopt, ""));
+  hub.heard_binary(viewer.client, "nonsense");
+  hub.heard_binary(viewer.client, "");
+  viewer.read();
+  EXPECT_TRUE(viewer.states.empty());
+  EXPECT_EQ(viewer.statuses.size(), 3U);
+}
+
+TEST(Hub, AShadowHasAChannelOfItsOwn) {
+  Hub hub("gfpd", 1);
+  Viewer viewer(hub);
+  viewer.read();
+  EXPECT_FALSE(viewer.channels.contains("/gfp/shadow/superquadric/"));
+  Scene scene = test::hand_made_scene(2);
+  scene.profile = "superquadric";
+  Inbox::Content content;
+  content.shadows[scene.sensor].value = std::make_shared<const Scene>(scene);
+  hub.take(std::move(content));
+  viewer.subscribe("/gfp/mesh/");
+  viewer.subscribe("/gfp/shadow/superquadric/");
+  ASSERT_EQ(viewer.payloads["/gfp/shadow/superquadric/"].size(), 1U);
+  EXPECT_EQ(parsed<v1::Scene>(viewer.payloads["/gfp/shadow/superquadric/"][0]).profile(), "superquadric");
+  EXPECT_EQ(viewer.payloads["/gfp/mesh/"].size(), 1U) << "its meshes are known";
+  viewer.subscribe("/gfp/scene/");
+  EXPECT_TRUE(viewer.payloads["/gfp/scene/"].empty());
 }
 
 TEST(Hub, ALateViewerGetsTheLastSceneAndItsTopologies) {

@@ -36,6 +36,42 @@ TEST(Protocol, TheHeaderIsLittleEndian) {
   EXPECT_EQ(header, std::string("\x01\x04\x03\x02\x01\x18\x17\x16\x15\x14\x13\x12\x11", 13));
 }
 
+// Layouts as in the SDK's protocol: opcode, then little-endian fields without gaps.
+TEST(Protocol, PlaybackRequestsAreRead) {
+  const std::string fixed("\3\1\0\0\0\x3f\1\0\x94\x35\x77\0\0\0\0", 15);  // pause, speed 0.5, seek to 2e9 ns
+  const auto request = parse_client_binary(fixed + std::string("\2\0\0\0ab", 6));
+  ASSERT_TRUE(request) << request.error().what;
+  const auto& playback = std::get<PlaybackRequest>(*request);
+  EXPECT_FALSE(playback.play);
+  EXPECT_EQ(playback.speed, 0.5);
+  EXPECT_EQ(playback.seek, Nanoseconds(2'000'000'000));
+  EXPECT_EQ(playback.id, "ab");
+  for (std::size_t length = 0; length < fixed.size() + 4; ++length) EXPECT_FALSE(parse_client_binary((fixed + std::string(4, '\0')).substr(0, length))) << length;
+  EXPECT_TRUE(parse_client_binary(fixed + std::string(4, '\0')));
+  EXPECT_FALSE(parse_client_binary(fixed + std::string("\5\0\0\0ab", 6))) << "an id that is cut off";
+  EXPECT_FALSE(parse_client_binary(fixed + std::string("\1\0\0\0ab", 6))) << "an id with more behind it";
+  EXPECT_FALSE(parse_client_binary(fixed + std::string("\1\2\0\0", 4) + std::string(513, 'x'))) << "a long id";
+  for (const auto& [place, byte] : {std::pair{std::size_t{1}, '\2'}, {std::size_t{0}, '\4'}, {std::size_t{5}, '\xbf'}, {std::size_t{6}, '\2'}, {std::size_t{14}, '\x80'}}) {
+    std::string bad = fixed + std::string(4, '\0');  // another command, opcode, a negative speed, a flag of 2, a time beyond 2262
+    bad[place] = byte;
+    EXPECT_FALSE(parse_client_binary(bad)) << place;
+  }
+}
+
+TEST(Protocol, PlaybackIsTold) {
+  EXPECT_EQ(playback_state({PlaybackStatus::kEnded, Nanoseconds(0x0102030405060708), 2, true, "ab"}),
+            std::string("\5\3\x08\x07\x06\x05\x04\x03\x02\x01\0\0\0\x40\1\2\0\0\0ab", 21));
+  EXPECT_EQ(time_message(Nanoseconds(0x0102030405060708)), std::string("\2\x08\x07\x06\x05\x04\x03\x02\x01", 9));
+  const Json live = Json::parse(server_info("gfpd", 1));
+  EXPECT_EQ(live["capabilities"], Json::array());
+  EXPECT_FALSE(live.contains("dataStartTime"));
+  const Json replay = Json::parse(server_info("gfpd", 1, PlaybackRange{Nanoseconds(1'500'000'000), Nanoseconds(4'000'000'007), true, 0.5}));
+  EXPECT_EQ(replay["capabilities"], Json::parse(R"(["time","playbackControl"])"));
+  EXPECT_EQ(replay["dataStartTime"], Json::parse(R"({"sec":1,"nsec":500000000})"));
+  EXPECT_EQ(replay["dataEndTime"], Json::parse(R"({"sec":4,"nsec":7})"));
+  EXPECT_EQ(replay["metadata"]["playback"], "paused");
+}
+
 TEST(Protocol, SubscriptionsAreRead) {
   const auto subscribe = parse_client_message(R"({"op":"subscribe","subscriptions":[{"id":1,"channelId":4294967295}]})");
   ASSERT_TRUE(subscribe.has_value());

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""The view of a real gfpd: starts one on the synthetic driver, then runs a client on its port.
+"""The view of a real gfpd: starts one on the synthetic driver, then runs a client on its port. For scripts whose name has `replay` in it, what
+that gfpd sees is recorded first, and the client meets a second one that plays the recording.
 
 Usage: view_test.py GFPD MODULES_DIR SCRIPT [ARGUMENT...]. MODULES_DIR gets the client's packages (npm ci) where they are not there.
 Exit code 77 (skipped) where node, npm, its packages or the browser are absent.
@@ -36,8 +37,10 @@ def fetch_packages():
         if done.returncode != 0:
             skip(f"npm could not fetch the client's packages: {done.stderr[-300:]}")
         stamp.touch()
-    # Node looks for packages beside the script: a copy of it stands beside them.
-    return shutil.copy(HERE / SCRIPT, MODULES / SCRIPT)
+    # Node looks for packages beside the script: copies of ours stand beside them.
+    for file in HERE.glob("*.mjs"):
+        shutil.copy(file, MODULES)
+    return MODULES / SCRIPT
 
 
 def free_port():
@@ -46,29 +49,57 @@ def free_port():
         return probe.getsockname()[1]
 
 
+SENSOR = "{name: virtual, driver: synthetic, synthetic: {seed: 7, rate_hz: 10, table: {objects: 4, classes: [mug, bottle, box, bowl, can]}}}"
+RECORDED_FRAMES = 40
+
+
+class Daemon:
+    """A gfpd with a configuration; the view's port is free and its own."""
+
+    def __init__(self, folder, text):
+        self.port = free_port()
+        config = pathlib.Path(folder) / f"{self.port}.yaml"
+        config.write_text(f"{text}\nview: {{port: {self.port}}}\n")
+        self.process = subprocess.Popen([GFPD, "--config", str(config)], env={**os.environ, "RUNTIME_DIRECTORY": folder}, stderr=subprocess.PIPE, text=True)
+        for line in self.process.stderr:  # until it listens
+            if "the view is at" in line:
+                break
+
+    def stop(self):
+        self.process.terminate()
+        self.process.communicate()
+
+
+def record(folder):
+    """A recording of what the synthetic sensor sees."""
+    daemon = Daemon(folder, f"sensors: [{SENSOR}]\nrecording: {{mode: continuous, folder: {folder}/recordings}}")
+    try:
+        count = subprocess.run(["node", MODULES / "wait_for_frames.mjs", str(daemon.port), str(RECORDED_FRAMES)], timeout=300)
+    finally:
+        daemon.stop()
+    if count.returncode != 0:
+        sys.exit(count.returncode)
+    return next(pathlib.Path(folder, "recordings").glob("*.mcap"))
+
+
 def main():
-    if SCRIPT == "browser_test.mjs" and not os.path.exists("/usr/bin/chromium"):
+    is_browser = "browser" in SCRIPT
+    if is_browser and not os.path.exists("/usr/bin/chromium"):
         skip("/usr/bin/chromium is not installed")
     script = fetch_packages()
-    port = free_port()
     with tempfile.TemporaryDirectory() as folder:
-        config = pathlib.Path(folder) / "gfpd.yaml"
-        config.write_text(f"""
-sensors: [{{name: virtual, driver: synthetic, synthetic: {{seed: 7, rate_hz: 10, table: {{objects: 4, classes: [mug, bottle, box, bowl, can]}}}}}}]
-view: {{port: {port}}}
-""")
-        daemon = subprocess.Popen([GFPD, "--config", str(config)], env={**os.environ, "RUNTIME_DIRECTORY": folder}, stderr=subprocess.PIPE, text=True)
+        if "replay" in SCRIPT:
+            text = f"sensors: [{{name: virtual, driver: replay, input: {record(folder)}}}]"
+        else:
+            text = f"sensors: [{SENSOR}]\npipeline: {{shadow: superquadric}}"
+        daemon = Daemon(folder, text)
         try:
-            for line in daemon.stderr:  # until it listens
-                if "the view is at" in line:
-                    break
-            page = urllib.request.urlopen(urllib.request.Request(f"http://127.0.0.1:{port}/", headers={"Accept-Encoding": "gzip"})).read()
-            if SCRIPT == "browser_test.mjs" and len(page) < 10_000:
+            page = urllib.request.urlopen(urllib.request.Request(f"http://127.0.0.1:{daemon.port}/", headers={"Accept-Encoding": "gzip"})).read()
+            if is_browser and len(page) < 10_000:
                 skip("this build has no page")
-            sys.exit(subprocess.run(["node", script, str(port), *ARGUMENTS], timeout=900).returncode)
+            sys.exit(subprocess.run(["node", script, str(daemon.port), *ARGUMENTS], timeout=900).returncode)
         finally:
-            daemon.terminate()
-            daemon.communicate()
+            daemon.stop()
 
 
 main()
