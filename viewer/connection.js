@@ -1,5 +1,5 @@
 // A client of the Foxglove WebSocket protocol: keeps the newest message of each channel and key, and reconnects by itself.
-import { createFileRegistry, fromBinary } from "@bufbuild/protobuf";
+import { create, createFileRegistry, fromBinary, toBinary } from "@bufbuild/protobuf";
 import { FileDescriptorSetSchema } from "@bufbuild/protobuf/wkt";
 
 const PLAYBACK = ["playing", "paused", "buffering", "ended"];
@@ -25,11 +25,14 @@ export class Connection {
     this.bySubscription = new Map();
     this.nextSubscription = this.nextRequest = 1;
     this.playback = null;
+    this.services = new Map(); // name -> {id, request, response}
+    this.calls = new Map(); // id -> {response, resolve, reject}
     this.onState("connecting");
     const socket = new WebSocket(this.url, SUBPROTOCOLS);
     socket.binaryType = "arraybuffer";
     socket.onmessage = ({ data }) => (typeof data === "string" ? this.heard(JSON.parse(data)) : this.received(data));
     socket.onclose = () => {
+      for (const { reject } of this.calls.values()) reject(new Error("the connection was lost"));
       this.onState("lost");
       setTimeout(() => this.open(), this.retry_ms);
       this.retry_ms = Math.min(4000, 2 * this.retry_ms);
@@ -58,6 +61,12 @@ export class Connection {
     } else if (message.op === "unadvertise") {
       for (const id of message.channelIds) this.channels.delete(id);
       this.onTopics([...this.channels.values()].map(({ topic }) => topic));
+    } else if (message.op === "advertiseServices") {
+      const schemaOf = ({ schema, schemaName }) => createFileRegistry(fromBinary(FileDescriptorSetSchema, bytesOfBase64(schema))).getMessage(schemaName);
+      for (const { id, name, request, response } of message.services) this.services.set(name, { id, request: schemaOf(request), response: schemaOf(response) });
+    } else if (message.op === "serviceCallFailure") {
+      this.calls.get(message.callId)?.reject(new Error(message.message));
+      this.calls.delete(message.callId);
     } else if (message.op === "status" && message.level > 0) {
       console.warn(message.message);
     }
@@ -109,9 +118,33 @@ export class Connection {
     if (this.socket.readyState === WebSocket.OPEN) this.socket.send(request.buffer);
   }
 
+  /** Asks a service; resolves to its answer, or rejects with its reason. */
+  call(name, fields) {
+    const service = this.services.get(name);
+    if (!service || this.socket.readyState !== WebSocket.OPEN) return Promise.reject(new Error("gfpd does not answer"));
+    const payload = toBinary(service.request, create(service.request, fields)), encoding = new TextEncoder().encode("protobuf"), id = this.nextRequest++;
+    const request = new DataView(new ArrayBuffer(13 + encoding.length + payload.length));
+    request.setUint8(0, 2);
+    request.setUint32(1, service.id, true);
+    request.setUint32(5, id, true);
+    request.setUint32(9, encoding.length, true);
+    const bytes = new Uint8Array(request.buffer);
+    bytes.set(encoding, 13);
+    bytes.set(payload, 13 + encoding.length);
+    this.socket.send(request.buffer);
+    return new Promise((resolve, reject) => this.calls.set(id, { response: service.response, resolve, reject }));
+  }
+
+  answered(view) {
+    const call = this.calls.get(view.getUint32(5, true));
+    this.calls.delete(view.getUint32(5, true));
+    call?.resolve(fromBinary(call.response, new Uint8Array(view.buffer, 13 + view.getUint32(9, true))));
+  }
+
   received(buffer) {
     const view = new DataView(buffer);
     const opcode = view.getUint8(0);
+    if (opcode === 3) return this.answered(view);
     if (opcode === 2 && this.playback) {
       this.playback.now_ns = view.getBigUint64(1, true);
       return this.onPlayback(this.playback);

@@ -3,11 +3,18 @@ import { Connection } from "./connection.js";
 import { element } from "./element.js";
 import { showConnection, showDetails, showLegend, showObjects, showSensors, showStages } from "./panel.js";
 import { Player } from "./player.js";
+import { RETYPE, Retype } from "./retype.js";
 import { World } from "./world.js";
 
 const $ = (id) => document.getElementById(id);
 const state = { selected: null, scene: null, sensor: null, topologies: new Map(), statuses: new Map(), isPaused: false, pointMode: "colour", second: null, meshMode: "seen" };
 const world = new World($("canvas"), $("labels"), select);
+const retype = new Retype(world, (fields) => connection.call(RETYPE, fields), () => {
+  retype.place();
+  showChoice();
+  world.draw();
+});
+world.pickFirst = (x, y) => retype.isOpen && retype.pick(x, y);
 
 const player = new Player((request) => connection.steer(request));
 
@@ -55,7 +62,9 @@ function onMessage(topic, read, logTime_ms) {
 function takeScene(scene, age_ms) {
   state.scene = scene;
   if (state.selected !== null && !scene.objects.some(({ id }) => id === state.selected)) state.selected = null;
+  if (retype.isOpen && retype.target.id !== state.selected) retype.close();
   world.setScene(scene, state.topologies, state.selected);
+  retype.place();
   legend();
   showStages(scene, age_ms);
   showChoice();
@@ -76,7 +85,7 @@ function showChoice() {
     const object = scene?.objects.find(({ id }) => id === state.selected);
     return object && { object, decoded: meshes.get(state.selected)?.decoded };
   };
-  showDetails(picked(state.scene, world.meshes), world.options.compare === "off" ? undefined : picked(state.second, world.second.meshes));
+  showDetails(picked(state.scene, world.meshes), world.options.compare === "off" ? undefined : picked(state.second, world.second.meshes), connection.services.has(RETYPE) ? retype : null);
 }
 
 function legend() {
@@ -85,6 +94,7 @@ function legend() {
 }
 
 function select(id) {
+  if (retype.isOpen && retype.target.id !== id) retype.close();
   state.selected = id;
   world.select(id);
   showChoice();
@@ -211,4 +221,4 @@ connection = new Connection(`${location.protocol === "https:" ? "wss" : "ws"}://
   },
 });
 document.addEventListener("visibilitychange", () => connection.review());
-window.gfp = { state, world, player }; // for whoever looks from the browser's console, and for the tests
+window.gfp = { state, world, player, retype }; // for whoever looks from the browser's console, and for the tests

@@ -70,8 +70,22 @@ function fitFigures({ object, decoded }) {
   ];
 }
 
-/** Of the picked object ({object, decoded}), with what a second method made of it where there is one. */
-export function showDetails(picked, second) {
+/** Control points by hand: a way into it, or what it shows. Touched only when something of it changes: it is worked with while scenes go on. */
+function showControlPoints(object, retype) {
+  const box = $("points");
+  const isOpen = Boolean(retype?.isOpen), isOffered = Boolean(retype && object.primitive);
+  const content = isOpen ? retype.show() : null;
+  const key = isOffered ? `${object.primitive} ${isOpen} ${content?.className} ${content?.className === "hint" ? content.textContent : ""} ${object.id}` : "";
+  if (box.dataset.key === key) return;
+  box.dataset.key = key;
+  if (!isOffered) return box.replaceChildren();
+  const open = element("button", { type: "button", id: "retype", text: "Retype…" });
+  open.addEventListener("click", () => retype.open(object));
+  box.replaceChildren(element("h2", { text: `Control points of ${object.primitive}` }), content ?? open);
+}
+
+/** Of the picked object ({object, decoded}), with what a second method made of it where there is one. `retype`: null where gfpd does not offer it. */
+export function showDetails(picked, second, retype) {
   const box = $("details");
   box.hidden = !picked;
   if (!picked) return;
@@ -86,12 +100,13 @@ export function showDetails(picked, second) {
     const others = fitFigures(second);
     pairs = pairs.map((row, i) => [...row, others[i][1]]);
   }
-  box.replaceChildren(
+  $("figures").replaceChildren(
     element("h2", { text: `${object.className} #${object.id}` }),
     bars(classes.map(([name, p]) => ({ name, value: p, text: percent(p), color: css(colorOfId(object.id)) })), 1),
     element("h2", { text: "Fit" }), figures(pairs),
     element("h2", { text: "Energy of the contour" }), energyCurve([{ object, color: css(SEEN) }, ...(second ? [{ object: second.object, color: css(SECOND_SEEN) }] : [])]),
     element("h2", { text: "Best grasp" }), figures(grasp));
+  showControlPoints(object, retype);
 }
 
 const FRAME_BUDGET_MS = 33;

@@ -36,6 +36,7 @@ export class World {
     this.controls = new OrbitControls(this.camera, canvas);
     this.controls.addEventListener("change", () => this.draw());
     this.level = new THREE.Quaternion(); // turns what the scene calls world so that the table is level
+    this.pickFirst = () => false; // who is asked before objects are: true where the click was meant for it
     this.listen(onPick);
     new ResizeObserver(() => this.resize()).observe(canvas);
   }
@@ -46,6 +47,7 @@ export class World {
     this.canvas.addEventListener("pointerup", (event) => {
       if (!down || Math.hypot(event.clientX - down[0], event.clientY - down[1]) > 5) return;
       const box = this.canvas.getBoundingClientRect();
+      if (this.pickFirst(event.clientX - box.left, event.clientY - box.top)) return;
       const at = new THREE.Vector2((2 * (event.clientX - box.left)) / box.width - 1, 1 - (2 * (event.clientY - box.top)) / box.height);
       const ray = new THREE.Raycaster();
       ray.setFromCamera(at, this.camera);

@@ -11,18 +11,15 @@
 #include <string>
 #include <vector>
 
-#include "app/builtin_library.hpp"
+#include "app/retype_primitive.hpp"
 #include "cli/primitive_commands.hpp"
 #include "cli/primitive_report.hpp"
-#include "gfp/primitive/primitive_of_members.hpp"
 #include "gfp/primitive/type_points.hpp"
-#include "wire/primitive_file.hpp"
 
 namespace gfp {
 namespace {
 
 using nlohmann::json;
-using ManualTypes = std::vector<std::optional<PointType>>;
 
 constexpr std::array<const char*, 8> kParts{"body", "base", "rim", "inner_wall", "handle", "neck", "cap", "spout"};  // as Part numbers them
 
@@ -77,18 +74,11 @@ Result<std::vector<bool>> selected(const RetypeArguments& arguments, const Primi
   return chosen;
 }
 
-/// Sets the selected vertices' manual types; returns how many changed.
-int retype(const std::vector<bool>& chosen, const std::string& set, ManualTypes& manual) {
-  std::optional<PointType> type;
-  if (set == "control") type = PointType::kControl;
-  if (set == "regular") type = PointType::kRegular;
-  int changed = 0;
-  for (std::size_t i = 0; i < chosen.size(); ++i) {
-    if (!chosen[i] || manual[i] == type) continue;
-    manual[i] = type;
-    ++changed;
-  }
-  return changed;
+/// What `--set` says.
+std::optional<PointType> type_of(const std::string& set) {
+  if (set == "control") return PointType::kControl;
+  if (set == "regular") return PointType::kRegular;
+  return std::nullopt;
 }
 
 json manual_json(const Primitive& primitive, const std::vector<Eigen::Vector3d>& points) {
@@ -114,19 +104,9 @@ void print(const json& result, bool list) {
                              entry["part"].get<std::string>(), 1e3 * entry["point_m"][0].get<double>(), 1e3 * entry["point_m"][1].get<double>(), 1e3 * entry["point_m"][2].get<double>());
 }
 
-/// The folder's primitive of this name, else a built-in one: its copy goes into the folder.
-Result<Primitive> find(const RetypeArguments& arguments) {
-  std::error_code ignored;
-  const bool own = !arguments.primitives.empty() && std::filesystem::exists(std::filesystem::path(arguments.primitives) / (arguments.name + ".gfp"), ignored);
-  if (own) return wire::read_primitive(std::filesystem::path(arguments.primitives) / (arguments.name + ".gfp"));
-  auto found = find_class(builtin_library(), arguments.name);
-  if (!found) return tl::unexpected(as_argument(found.error()));
-  return **found;
-}
-
 Result<json> run(const RetypeArguments& arguments) {
-  auto primitive = find(arguments);
-  if (!primitive) return tl::unexpected(primitive.error());
+  auto primitive = primitive_to_retype(arguments.primitives, arguments.name);
+  if (!primitive) return tl::unexpected(primitive.error().code == ErrorCode::kNotFound ? as_argument(primitive.error()) : primitive.error());
   const std::vector<Eigen::Vector3d> points = shape(*primitive, primitive->typical_size_m());
   json result{{"primitive", primitive->name}, {"file", nullptr}, {"changed", 0}};
   if (!arguments.set.empty()) {
@@ -134,16 +114,10 @@ Result<json> run(const RetypeArguments& arguments) {
       return failure(ErrorCode::kInvalidArgument, "--set " + arguments.set + ": expected --vertices, --box or --part beside it");
     const auto chosen = selected(arguments, *primitive, points);
     if (!chosen) return tl::unexpected(chosen.error());
-    ManualTypes manual = primitive->manual_types;
-    manual.resize(primitive->size());
-    result["changed"] = retype(*chosen, arguments.set, manual);
-    if (std::none_of(manual.begin(), manual.end(), [](const auto& type) { return type.has_value(); })) manual.clear();
-    set_manual_types(*primitive, std::move(manual));
-    const auto file = std::filesystem::path(arguments.primitives) / (primitive->name + ".gfp");
-    std::error_code ignored;
-    std::filesystem::create_directories(file.parent_path(), ignored);
-    if (auto written = wire::write_primitive(file, *primitive); !written) return tl::unexpected(written.error());
-    result["file"] = file.string();
+    result["changed"] = set_types_by_hand(*chosen, type_of(arguments.set), *primitive);
+    const auto file = keep_primitive(arguments.primitives, *primitive);
+    if (!file) return tl::unexpected(file.error());
+    result["file"] = file->string();
   }
   result["manual"] = manual_json(*primitive, points);
   result["control_points"] = count_controls(*primitive);

@@ -48,7 +48,8 @@ DaemonParts parts_of(const ReplayArguments& arguments, const PrimitiveLibrary& l
           },
           [&library](const Scene& scene, const SceneMemory& memory, const PipelineOptions& options, ShadowMemory& kept) {
             return shadow_scene(scene, memory, library, options, kept);
-          }};
+          },
+          [](const std::string&, const std::vector<std::uint32_t>&, std::optional<PointType>) -> Result<RetypedPrimitive> { return failure(ErrorCode::kUnsupported, "gfp replay changes no primitives, expected gfpd"); }};
 }
 
 Result<DaemonOptions> options_of(const ReplayArguments& arguments, const std::string& sensor) {

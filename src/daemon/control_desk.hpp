@@ -18,20 +18,24 @@ class ControlDesk {
   using Answer = std::function<v1::ControlReply(const v1::ControlRequest&)>;
   using Send = std::function<void(PeerReply)>;
 
-  ControlDesk(Answer answer, Send send) : answer_(std::move(answer)), send_(std::move(send)), thread_([this](const std::stop_token& stop) { run(stop); }) {}
+  explicit ControlDesk(Answer answer) : answer_(std::move(answer)), thread_([this](const std::stop_token& stop) { run(stop); }) {}
 
-  void put(PeerRequest request);  ///< Safe from any thread, never blocks.
+  /// The answer goes to `send`, on the desk's thread or at once. Safe from any thread, never blocks.
+  void put(PeerRequest request, Send send);
 
  private:
+  struct Waiting {
+    PeerRequest request;
+    Send send;
+  };
   void run(const std::stop_token& stop);
 
   static constexpr std::size_t kMaxWaiting = 16;
 
   const Answer answer_;
-  const Send send_;
   Mutex mutex_;
   std::condition_variable_any changed_;
-  std::deque<PeerRequest> waiting_ GFP_GUARDED_BY(mutex_);
+  std::deque<Waiting> waiting_ GFP_GUARDED_BY(mutex_);
   std::jthread thread_;  ///< Last: it uses all of the above.
 };
 

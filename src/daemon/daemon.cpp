@@ -26,12 +26,12 @@ Result<std::unique_ptr<Daemon>> Daemon::start(DaemonOptions options, DaemonParts
   if (options.sensors.empty()) return failure(ErrorCode::kInvalidArgument, "sensors: none is configured, expected at least one");
   std::unique_ptr<Daemon> daemon(new Daemon(options, std::move(parts)));
   Daemon& self = *daemon;
-  self.desk_ = std::make_unique<ControlDesk>([&self](const v1::ControlRequest& request) { return self.answer(request); },
-                                             [&self](PeerReply reply) {
-                                               MutexLock lock(self.mutex_);
-                                               if (self.publisher_) self.publisher_->put(std::move(reply));
-                                             });
-  auto publisher = Publisher::start(options.publish, session, [&self](PeerRequest request) { self.desk_->put(std::move(request)); });
+  self.desk_ = std::make_unique<ControlDesk>([&self](const v1::ControlRequest& request) { return self.answer(request); });
+  const auto to_socket = [&self](PeerReply reply) {
+    MutexLock lock(self.mutex_);
+    if (self.publisher_) self.publisher_->put(std::move(reply));
+  };
+  auto publisher = Publisher::start(options.publish, session, [&self, to_socket](PeerRequest request) { self.desk_->put(std::move(request), to_socket); });
   if (!publisher) return tl::unexpected(publisher.error());
   {
     MutexLock lock(self.mutex_);  // the desk may be at work already

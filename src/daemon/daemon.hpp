@@ -17,11 +17,23 @@
 
 namespace gfp {
 
+/// What a primitive's points are after a person's word on some of them.
+struct RetypedPrimitive {
+  std::string name;
+  std::string file;  ///< That holds it; empty where nothing was changed.
+  int changed = 0;   ///< Vertices.
+  std::vector<PointType> types;
+  std::vector<std::optional<PointType>> manual;  ///< One a vertex, or none at all.
+};
+
 /// What the daemon is given, so that tests can give it something else.
 struct DaemonParts {
+  using Retype = std::function<Result<RetypedPrimitive>(const std::string& primitive, const std::vector<std::uint32_t>& vertices, std::optional<PointType> type)>;
+
   std::function<Result<std::unique_ptr<FrameSource>>(const SensorConfig&)> make_source;
   std::function<PipelineResult(const Frame&, const SceneMemory&, const PipelineOptions&)> process;
   Shadow::Fit shadow;
+  Retype retype;  ///< Called on the desk's thread.
 };
 
 /// gfpd without its command line: sensors, one pipeline, one publisher, and a recorder where one is configured.
@@ -47,6 +59,9 @@ class Daemon {
   bool is_responsive() const;  ///< No frame has been at work for longer than kStuckAfter.
   void stop();  ///< Drains: the frame at work becomes a scene, the last state is sent. Idempotent.
 
+  /// A request that does not come over a socket of the publisher's. Safe from any thread while the daemon lives.
+  void ask(PeerRequest request, ControlDesk::Send send) { desk_->put(std::move(request), std::move(send)); }
+
   Publisher& publisher() { return *publisher_; }
   Recorder* recorder() { return recorder_.get(); }  ///< nullptr: recording.mode is `off`.
 
@@ -66,6 +81,7 @@ class Daemon {
   v1::ControlReply answer_fit(const v1::ControlRequest& request);
   v1::ControlReply answer_grasp(const v1::ControlRequest& request);
   v1::ControlReply answer_set_parameters(const v1::ControlRequest& request);
+  v1::ControlReply answer_retype(const v1::ControlRequest& request) const;
 
   static constexpr Nanoseconds kStuckAfter{20'000'000'000};
 

@@ -1,4 +1,4 @@
-// What the daemon answers on the control socket: fits, grasps that the robot reaches, parameters.
+// What the daemon answers to control requests: fits, grasps that the robot reaches, parameters, control points by hand.
 #include <fmt/format.h>
 
 #include "daemon/daemon.hpp"
@@ -10,6 +10,11 @@ namespace gfp {
 namespace {
 
 using Reply = v1::ControlReply;
+
+Reply::Code code_of(ErrorCode code) {
+  if (code == ErrorCode::kNotFound) return Reply::CODE_NOT_FOUND;
+  return code == ErrorCode::kIo ? Reply::CODE_UNAVAILABLE : Reply::CODE_INVALID;
+}
 
 /// The entry of the sensor that is named, or of the only one.
 template <class T>
@@ -50,6 +55,7 @@ Reply Daemon::answer(const v1::ControlRequest& request) {
     MutexLock lock(mutex_);
     return parameters_reply(options_, request.get_parameters().prefixes());
   }
+  if (request.has_retype()) return answer_retype(request);
   return answer_set_parameters(request);
 }
 
@@ -108,6 +114,25 @@ Reply Daemon::answer_grasp(const v1::ControlRequest& request) {
   }
   return refusal(request, Reply::CODE_NOT_FOUND,
                  fmt::format("none of the {} grasps of object {} is sure enough and within {} to {} m of the robot's base", object->grasps.grasps.size(), id, robot.min_reach_m, robot.max_reach_m));
+}
+
+Reply Daemon::answer_retype(const v1::ControlRequest& request) const {
+  const v1::RetypeRequest& asked = request.retype();
+  std::optional<PointType> type;
+  if (asked.type() == v1::RetypeRequest::TYPE_REGULAR) type = PointType::kRegular;
+  else if (asked.type() == v1::RetypeRequest::TYPE_CONTROL) type = PointType::kControl;
+  else if (asked.type() != v1::RetypeRequest::TYPE_AUTOMATIC) return refusal(request, Reply::CODE_INVALID, fmt::format("type = {}, expected 0 to 2", static_cast<int>(asked.type())));
+  const auto done = parts_.retype(asked.primitive(), {asked.vertices().begin(), asked.vertices().end()}, type);
+  if (!done) return refusal(request, code_of(done.error().code), done.error().what);
+  Reply reply;
+  v1::Retyped& retyped = *reply.mutable_retyped();
+  retyped.set_primitive(done->name);
+  retyped.set_file(done->file);
+  retyped.set_changed(static_cast<std::uint32_t>(done->changed));
+  for (const PointType one : done->types) retyped.mutable_types()->push_back(one == PointType::kControl ? '\1' : '\0');
+  for (const std::optional<PointType>& manual : done->manual) retyped.mutable_manual_types()->push_back(!manual ? '\0' : *manual == PointType::kRegular ? '\1' : '\2');
+  retyped.mutable_manual_types()->resize(done->types.size(), '\0');  // nothing by hand: none is listed
+  return reply;
 }
 
 Reply Daemon::answer_set_parameters(const v1::ControlRequest& request) {

@@ -3,14 +3,19 @@
 #include <csignal>
 
 #include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include <filesystem>
 #include <iostream>
 #include <memory>
+#include <optional>
 #include <random>
 #include <utility>
 
 #include "app/builtin_library.hpp"
 #include "app/driver_channel.hpp"
 #include "app/make_source.hpp"
+#include "app/retype_primitive.hpp"
 #include "cli/exit_code.hpp"
 #include "daemon/daemon.hpp"
 #include "daemon/logging.hpp"
@@ -45,24 +50,67 @@ std::uint64_t new_session() {
   return (static_cast<std::uint64_t>(device()) << 32) | device();
 }
 
+/// Where the primitives come from, as configured.
+struct LibraryPlace {
+  std::string primitives;
+  int upsampling = 0;
+  std::string configuration;
+  std::filesystem::path folder() const { return std::filesystem::path(configuration).parent_path() / primitives; }
+};
+
 /// The primitives that frames are processed with: those of the last good configuration, from the next frame on. Safe from any thread.
 class LiveLibrary {
  public:
-  explicit LiveLibrary(gfp::PrimitiveLibrary library) { store(std::move(library)); }
-  void store(gfp::PrimitiveLibrary library) {
-    auto shared = std::make_shared<const gfp::PrimitiveLibrary>(std::move(library));
+  /// Errors: as library_of_configuration(); then the old ones stay.
+  gfp::Result<void> load(const LibraryPlace& place) {
+    auto read = gfp::library_of_configuration(place.primitives, place.upsampling, place.configuration);
+    if (!read) return tl::unexpected(read.error());
+    auto shared = std::make_shared<const gfp::PrimitiveLibrary>(std::move(*read));
     const gfp::MutexLock lock(mutex_);
     library_ = std::move(shared);
+    place_ = place;
+    return {};
   }
-  std::shared_ptr<const gfp::PrimitiveLibrary> load() const {
+  std::shared_ptr<const gfp::PrimitiveLibrary> get() const {
     const gfp::MutexLock lock(mutex_);
     return library_;
+  }
+  LibraryPlace place() const {
+    const gfp::MutexLock lock(mutex_);
+    return place_;
   }
 
  private:
   mutable gfp::Mutex mutex_;
   std::shared_ptr<const gfp::PrimitiveLibrary> library_ GFP_GUARDED_BY(mutex_);  ///< Shared with the frame under way.
+  LibraryPlace place_ GFP_GUARDED_BY(mutex_);
 };
+
+/// A person's word on control points: into the folder of own primitives, and from there into the library. Without vertices it only says how they are.
+gfp::Result<gfp::RetypedPrimitive> retype(LiveLibrary& live, const std::string& name, const std::vector<std::uint32_t>& vertices, std::optional<gfp::PointType> type) {
+  using gfp::ErrorCode, gfp::failure;
+  const LibraryPlace place = live.place();
+  if (place.primitives.empty()) return failure(ErrorCode::kUnsupported, "primitives is empty in the configuration, expected a folder that keeps what is said by hand");
+  if (place.upsampling != 0) return failure(ErrorCode::kUnsupported, fmt::format("upsampling = {}, expected 0: its vertices are not those of the file", place.upsampling));
+  auto primitive = gfp::primitive_to_retype(place.folder(), name);
+  if (!primitive) return tl::unexpected(primitive.error());
+  std::vector<bool> chosen(primitive->size());
+  for (const std::uint32_t vertex : vertices) {
+    if (vertex >= chosen.size()) return failure(ErrorCode::kInvalidArgument, fmt::format("vertex {}, expected below {}", vertex, chosen.size()));
+    chosen[vertex] = true;
+  }
+  gfp::RetypedPrimitive done{primitive->name, "", gfp::set_types_by_hand(chosen, type, *primitive), {}, {}};
+  if (done.changed > 0) {
+    const auto file = gfp::keep_primitive(place.folder(), *primitive);
+    if (!file) return failure(file.error().code, file.error().what + " (the folder of `primitives` must be writable for gfpd)");
+    done.file = file->string();
+    if (auto loaded = live.load(place); !loaded) return tl::unexpected(loaded.error());
+    spdlog::info("primitive {}: {} vertices retyped by hand, {}", done.name, done.changed, done.file);
+  }
+  done.types = primitive->topology->types;
+  done.manual = primitive->manual_types;
+  return done;
+}
 
 /// One recording has one time line; where several are played, or one in a process of its own, nobody steers them.
 bool is_steerable(const gfp::SensorConfig& sensor) { return sensor.driver == "replay" && sensor.input.ends_with(".mcap") && sensor.isolation == "none"; }
@@ -76,7 +124,7 @@ std::shared_ptr<gfp::ReplayControl> playback_of(const gfp::DaemonOptions& option
 }
 
 /// `playback`: of the recording that is played; may be empty.
-gfp::DaemonParts parts(const LiveLibrary& live, std::shared_ptr<gfp::ReplayControl> playback) {
+gfp::DaemonParts parts(LiveLibrary& live, std::shared_ptr<gfp::ReplayControl> playback) {
   return {[playback = std::move(playback)](gfp::SensorConfig sensor) {
             if (playback && is_steerable(sensor)) {
               sensor.replay.control = playback;
@@ -85,23 +133,26 @@ gfp::DaemonParts parts(const LiveLibrary& live, std::shared_ptr<gfp::ReplayContr
             return gfp::make_source(sensor);
           },
           [&live](const gfp::Frame& frame, const gfp::SceneMemory& memory, const gfp::PipelineOptions& options) {
-            const auto library = live.load();
+            const auto library = live.get();
             return gfp::process_frame(frame, memory, *library, options);
           },
           [&live](const gfp::Scene& scene, const gfp::SceneMemory& memory, const gfp::PipelineOptions& options, gfp::ShadowMemory& kept) {
-            const auto library = live.load();
+            const auto library = live.get();
             return gfp::shadow_scene(scene, memory, *library, options, kept);
-          }};
+          },
+          [&live](const std::string& name, const std::vector<std::uint32_t>& vertices, std::optional<gfp::PointType> type) { return retype(live, name, vertices, type); }};
 }
 
 void reload(gfp::Daemon& daemon, LiveLibrary& library, const Arguments& arguments) {
   gfp::tell_reloading();
   const auto options = load(arguments);
   if (!options) return spdlog::error("reload: the old configuration stays: {}", options.error().what);
-  auto primitives = gfp::library_of_configuration(options->primitives, options->upsampling, arguments.config);
-  if (!primitives) return spdlog::error("reload: the old configuration stays: {}", primitives.error().what);
-  if (const auto done = daemon.reload(*options); !done) return spdlog::error("reload: the old configuration stays: {}", done.error().what);
-  library.store(std::move(*primitives));
+  const LibraryPlace before = library.place();
+  if (const auto read = library.load({options->primitives, options->upsampling, arguments.config}); !read) return spdlog::error("reload: the old configuration stays: {}", read.error().what);
+  if (const auto done = daemon.reload(*options); !done) {
+    static_cast<void>(library.load(before));
+    return spdlog::error("reload: the old configuration stays: {}", done.error().what);
+  }
   spdlog::info("reloaded {}", arguments.config);
 }
 
@@ -128,10 +179,10 @@ void serve(gfp::Daemon& daemon, LiveLibrary& library, const Arguments& arguments
 }
 
 /// Robots live without a view: where it cannot be served, that is said and the daemon goes on.
-std::unique_ptr<gfp::View> start_view(const gfp::DaemonOptions& options, std::uint64_t session, gfp::Publisher& publisher, std::shared_ptr<gfp::ReplayControl> playback) {
-  auto view = gfp::View::start(options.view, session, std::move(playback));
+std::unique_ptr<gfp::View> start_view(const gfp::DaemonOptions& options, std::uint64_t session, gfp::Daemon& daemon, std::shared_ptr<gfp::ReplayControl> playback) {
+  auto view = gfp::View::start(options.view, session, std::move(playback), [&daemon](gfp::PeerRequest request, std::function<void(gfp::PeerReply)> send) { daemon.ask(std::move(request), std::move(send)); });
   if (!view) return spdlog::warn("no view: {}", view.error().what), nullptr;
-  publisher.mirror(&(*view)->inbox());
+  daemon.publisher().mirror(&(*view)->inbox());
   spdlog::info("the view is at http://{}:{}/", options.view.address, (*view)->port());
   return std::move(*view);
 }
@@ -152,12 +203,11 @@ int run(const Arguments& arguments) {
   for (const int signal : {SIGTERM, SIGINT, SIGHUP, SIGUSR1}) sigaddset(&signals, signal);
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);
 
-  auto primitives = gfp::library_of_configuration(options->primitives, options->upsampling, arguments.config);
-  if (!primitives) {
-    std::cerr << "gfpd: " << primitives.error().what << "\n";
+  LiveLibrary library;  // it outlives the daemon, whose pipeline reads it
+  if (const auto read = library.load({options->primitives, options->upsampling, arguments.config}); !read) {
+    std::cerr << "gfpd: " << read.error().what << "\n";
     return gfp::kExitConfig;
   }
-  LiveLibrary library(std::move(*primitives));  // it outlives the daemon, whose pipeline reads it
   const std::uint64_t session = new_session();
   const auto playback = playback_of(*options);
   std::unique_ptr<gfp::View> view;  // it outlives the daemon, whose threads put into it
@@ -167,12 +217,13 @@ int run(const Arguments& arguments) {
     return daemon.error().code == gfp::ErrorCode::kInvalidArgument ? gfp::kExitConfig : gfp::kExitUnavailable;
   }
   gfp::publish_log_to(&(*daemon)->publisher());
-  if (options->view.enabled) view = start_view(*options, session, (*daemon)->publisher(), playback);
+  if (options->view.enabled) view = start_view(*options, session, **daemon, playback);
   spdlog::info("gfpd {} serves {} sensor(s)", gfp::version(), options->sensors.size());
   gfp::tell_service_manager("READY=1");
   serve(**daemon, library, arguments, signals);
   gfp::tell_service_manager("STOPPING=1");
   gfp::publish_log_to(nullptr);
+  if (view) view->stop();  // it asks the daemon
   (*daemon)->stop();
   spdlog::info("stopped");
   return gfp::kExitOk;

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "wire/bounded_parse.hpp"
 #include "wire/foxglove_messages.hpp"
 #include "wire/scene_messages.hpp"
 #include "wire/schema.hpp"
@@ -10,11 +11,14 @@
 namespace gfp::view {
 namespace {
 
+constexpr std::uint32_t kRetypeService = 1;
+
 std::uint64_t log_time(Nanoseconds stamp) { return static_cast<std::uint64_t>(stamp.count() > 0 ? stamp.count() : realtime_now().count()); }
 
 }  // namespace
 
-Hub::Hub(std::string name, std::uint64_t session, std::shared_ptr<ReplayControl> playback) : name_(std::move(name)), session_(session), playback_(std::move(playback)) {
+Hub::Hub(std::string name, std::uint64_t session, std::shared_ptr<ReplayControl> playback, Ask ask)
+    : name_(std::move(name)), session_(session), playback_(std::move(playback)), ask_(std::move(ask)) {
   for (const Stream stream : {Stream::kScene, Stream::kMesh, Stream::kMarkers, Stream::kStatus, Stream::kLog}) channel_for(stream, "");
 }
 
@@ -55,13 +59,20 @@ void Hub::join(Client& client) {
     const ReplayControl::State state = playback_->state();
     range = {state.begin, state.begin + state.duration, state.paused, state.speed};
   }
-  client.send_text(server_info(name_, session_, range));
+  client.send_text(server_info(name_, session_, range, ask_ != nullptr));
   std::vector<Channel> all;
   for (const auto& [id, entry] : by_id_) all.push_back(entry->channel);
   client.send_text(advertise(all));
+  if (!ask_) return;
+  const auto *request = v1::RetypeRequest::descriptor(), *response = v1::Retyped::descriptor();
+  const Service retype{kRetypeService, "/gfp/primitive/retype", request->full_name(), wire::descriptor_set(*request), response->full_name(), wire::descriptor_set(*response)};
+  client.send_text(advertise_services(std::span(&retype, 1)));
 }
 
-void Hub::leave(Client& client) { clients_.erase(&client); }
+void Hub::leave(Client& client) {
+  clients_.erase(&client);
+  std::erase_if(calls_, [&](const auto& entry) { return entry.second.client == &client; });
+}
 
 void Hub::heard(Client& client, std::string_view text) {
   const auto complain = [&](const std::string& what) { client.send_text(status(StatusLevel::kError, what)); };
@@ -87,8 +98,29 @@ void Hub::heard(Client& client, std::string_view text) {
 void Hub::heard_binary(Client& client, std::string_view bytes) {
   const auto message = parse_client_binary(bytes);
   if (!message) return client.send_text(status(StatusLevel::kError, message.error().what));
+  if (const auto* call = std::get_if<ServiceCall>(&*message)) return this->call(client, *call);
   if (!playback_) return client.send_text(status(StatusLevel::kError, "playback: there is no recording to steer"));
   steer(client, std::get<PlaybackRequest>(*message));
+}
+
+void Hub::call(Client& client, const ServiceCall& call) {
+  const auto refuse = [&](const std::string& why) { client.send_text(service_failure(call.service, call.call, why)); };
+  if (!ask_ || call.service != kRetypeService) return refuse(fmt::format("no service {}", call.service));
+  if (calls_.size() >= kMaxCalls) return refuse(fmt::format("{} calls wait already", kMaxCalls));
+  PeerRequest request;
+  request.peer.identity = std::to_string(next_call_++);
+  if (auto parsed = wire::parse_bounded(wire::as_bytes(call.payload), kMaxClientMessageBytes, *request.request.mutable_retype()); !parsed) return refuse(parsed.error().what);
+  calls_[request.peer.identity] = {&client, call.call};
+  ask_(std::move(request));
+}
+
+void Hub::answer(const PeerReply& reply) {
+  const auto found = calls_.find(reply.peer.identity);
+  if (found == calls_.end()) return;  // who asked is gone
+  const Call call = found->second;
+  calls_.erase(found);
+  if (reply.reply.code() != v1::ControlReply::CODE_OK) return call.client->send_text(service_failure(kRetypeService, call.id, reply.reply.error()));
+  call.client->send_binary(service_response(kRetypeService, call.id, reply.reply.retyped().SerializeAsString()));
 }
 
 /// What one client turns, all learn who have ever asked for something themselves: others do not know the message.
@@ -130,6 +162,7 @@ bool Hub::is_wanted(const Entry& entry) const {
 
 void Hub::take(Inbox::Content content) {
   if (playback_ && (!content.frames.empty() || !content.statuses.empty())) tell_playback();
+  for (const PeerReply& reply : content.replies) answer(reply);
   for (const auto& [sensor, frame] : content.frames) take_frame(frame.value);
   for (const auto& [sensor, scene] : content.scenes) take_scene(scene.value);
   for (const auto& [sensor, shadow] : content.shadows) take_shadow(shadow.value);

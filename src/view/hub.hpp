@@ -18,8 +18,11 @@ namespace gfp::view {
 /// The view's thread only.
 class Hub {
  public:
+  /// Takes a request whose reply comes with take(), as one of its content; empty: no service is offered.
+  using Ask = std::function<void(PeerRequest)>;
+
   /// `playback`: the knobs of the recording that is played; empty: nothing is offered to be steered.
-  Hub(std::string name, std::uint64_t session, std::shared_ptr<ReplayControl> playback = {});
+  Hub(std::string name, std::uint64_t session, std::shared_ptr<ReplayControl> playback = {}, Ask ask = {});
 
   void join(Client& client);   ///< Says who we are and what there is.
   void leave(Client& client);
@@ -46,6 +49,8 @@ class Hub {
   Entry& channel_for(Stream stream, const std::string& name);
   bool is_wanted(const Entry& entry) const;
 
+  void call(Client& client, const ServiceCall& call);
+  void answer(const PeerReply& reply);
   void steer(Client& client, const PlaybackRequest& request);
   void tell_playback();
   PlaybackState playback_now() const;
@@ -60,11 +65,18 @@ class Hub {
   void send_status(const Entry& entry, const v1::SensorStatus& status, Client* only);
   void deliver(const Entry& entry, const std::string& key, std::uint64_t log_time_ns, const google::protobuf::MessageLite& message, Client* only);
 
-  static constexpr std::size_t kMaxTopologies = 256;
+  static constexpr std::size_t kMaxTopologies = 256, kMaxCalls = 16;
 
   const std::string name_;
   const std::uint64_t session_;
   const std::shared_ptr<ReplayControl> playback_;
+  const Ask ask_;
+  struct Call {
+    Client* client = nullptr;
+    std::uint32_t id = 0;
+  };
+  std::map<std::string, Call> calls_;  ///< That wait for their replies, by the peer that these come back to.
+  std::uint64_t next_call_ = 0;
   std::optional<PlaybackState> told_;  ///< To those who steer.
   std::set<Client*> clients_;
   std::map<std::pair<Stream, std::string>, Entry> channels_;

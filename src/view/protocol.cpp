@@ -12,9 +12,10 @@ namespace {
 
 using Json = nlohmann::json;
 
+constexpr std::string_view kEncoding = "protobuf";
 constexpr std::int64_t kPerSecond = 1'000'000'000;
-enum Opcode : std::uint8_t { kMessageData = 1, kTime = 2, kPlaybackState = 5 };  // of the server
-enum ClientOpcode : std::uint8_t { kPlaybackControl = 3 };
+enum Opcode : std::uint8_t { kMessageData = 1, kTime = 2, kServiceResponse = 3, kPlaybackState = 5 };  // of the server
+enum ClientOpcode : std::uint8_t { kServiceRequest = 2, kPlaybackControl = 3 };
 
 std::string base64(std::string_view bytes) {
   constexpr std::string_view kAlphabet = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
@@ -80,6 +81,15 @@ Result<PlaybackRequest> playback_request(std::string_view bytes) {
   return request;
 }
 
+Result<ServiceCall> service_call(std::string_view bytes) {
+  constexpr std::size_t kFixed = 3 * 4;
+  if (bytes.size() < kFixed) return failure(ErrorCode::kCorruptData, fmt::format("a service call of {} bytes, expected at least {}", bytes.size(), kFixed));
+  const auto service = take<std::uint32_t>(bytes), call = take<std::uint32_t>(bytes), length = take<std::uint32_t>(bytes);
+  const std::string_view encoding = bytes.substr(0, length);
+  if (encoding.size() != length || encoding != kEncoding) return failure(ErrorCode::kCorruptData, fmt::format("a service call encoded in {} bytes, expected {}", length, kEncoding));
+  return ServiceCall{service, call, std::string(bytes.substr(length))};
+}
+
 ClientMessage message_of(const Json& message) {
   const std::string op = message.at("op").get<std::string>();
   if (op == "subscribe") {
@@ -107,7 +117,7 @@ std::string_view choose_subprotocol(std::string_view offered) {
   return {};
 }
 
-std::string server_info(std::string_view name, std::uint64_t session, const std::optional<PlaybackRange>& playback) {
+std::string server_info(std::string_view name, std::uint64_t session, const std::optional<PlaybackRange>& playback, bool has_services) {
   Json info{{"op", "serverInfo"}, {"name", name}, {"capabilities", Json::array()}, {"supportedEncodings", {"protobuf"}}, {"metadata", Json::object()}, {"sessionId", fmt::format("{:016x}", session)}};
   if (playback) {
     info["capabilities"] = {"time", "playbackControl"};
@@ -115,7 +125,30 @@ std::string server_info(std::string_view name, std::uint64_t session, const std:
     info["dataEndTime"] = json_time(playback->end);
     info["metadata"] = {{"playback", playback->is_paused ? "paused" : "playing"}, {"speed", fmt::format("{}", playback->speed)}};
   }
+  if (has_services) info["capabilities"].push_back("services");
   return info.dump();
+}
+
+std::string advertise_services(std::span<const Service> services) {
+  Json list = Json::array();
+  const auto message = [](const std::string& name, const std::string& schema) {
+    return Json{{"encoding", kEncoding}, {"schemaName", name}, {"schema", base64(schema)}, {"schemaEncoding", kEncoding}};
+  };
+  for (const Service& service : services)
+    list.push_back({{"id", service.id}, {"name", service.name}, {"type", service.request_name}, {"request", message(service.request_name, service.request_schema)}, {"response", message(service.response_name, service.response_schema)}});
+  return Json{{"op", "advertiseServices"}, {"services", std::move(list)}}.dump();
+}
+
+std::string service_failure(std::uint32_t service, std::uint32_t call, std::string_view message) {
+  return Json{{"op", "serviceCallFailure"}, {"serviceId", service}, {"callId", call}, {"message", message}}.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+std::string service_response(std::uint32_t service, std::uint32_t call, std::string_view payload) {
+  std::string message(1, static_cast<char>(kServiceResponse));
+  put(message, service, 4);
+  put(message, call, 4);
+  put(message, kEncoding.size(), 4);
+  return message.append(kEncoding).append(payload);
 }
 
 std::string advertise(std::span<const Channel> channels) {
@@ -142,6 +175,7 @@ Result<ClientBinary> parse_client_binary(std::string_view bytes) {
   if (bytes.empty()) return failure(ErrorCode::kCorruptData, "a binary message without an opcode");
   const auto opcode = take<std::uint8_t>(bytes);
   if (opcode == kPlaybackControl) return playback_request(bytes);
+  if (opcode == kServiceRequest) return service_call(bytes);
   return failure(ErrorCode::kCorruptData, fmt::format("opcode {}: not offered by this server", opcode));
 }
 

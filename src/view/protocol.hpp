@@ -37,7 +37,18 @@ struct PlaybackRange {
 };
 
 /// With a range the capabilities `time` and `playbackControl` are offered; our page finds the present state in `metadata`.
-std::string server_info(std::string_view name, std::uint64_t session, const std::optional<PlaybackRange>& playback = {});
+std::string server_info(std::string_view name, std::uint64_t session, const std::optional<PlaybackRange>& playback = {}, bool has_services = false);
+
+/// Something that clients may ask for, with the messages of question and answer (schemas as in Channel).
+struct Service {
+  std::uint32_t id = 0;
+  std::string name;
+  std::string request_name, request_schema;
+  std::string response_name, response_schema;
+};
+std::string advertise_services(std::span<const Service> services);
+std::string service_failure(std::uint32_t service, std::uint32_t call, std::string_view message);
+std::string service_response(std::uint32_t service, std::uint32_t call, std::string_view payload);  ///< Binary, opcode 3.
 std::string advertise(std::span<const Channel> channels);
 
 enum class StatusLevel { kInfo = 0, kWarning = 1, kError = 2 };
@@ -65,7 +76,12 @@ struct PlaybackRequest {
   std::optional<Nanoseconds> seek;   ///< CLOCK_REALTIME of recording.
   std::string id;                    ///< The client's own; the answer carries it back.
 };
-using ClientBinary = std::variant<PlaybackRequest>;
+/// A call of a service, in protobuf.
+struct ServiceCall {
+  std::uint32_t service = 0, call = 0;  ///< `call` is the client's own.
+  std::string payload;
+};
+using ClientBinary = std::variant<PlaybackRequest, ServiceCall>;
 
 inline constexpr std::size_t kMaxRequestIdBytes = 256;
 

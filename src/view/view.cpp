@@ -202,8 +202,8 @@ class Request : public std::enable_shared_from_this<Request> {
 
 class View::Server {
  public:
-  Server(const ViewOptions& options, std::uint64_t session, Inbox& inbox, std::shared_ptr<ReplayControl> playback)
-      : shared_{options, Hub(fmt::format("gfpd {}", version()), session, std::move(playback)), {}, 0}, inbox_(inbox), wake_(context_, dup(inbox.wake_file())), acceptor_(context_), pause_(context_) {}
+  Server(const ViewOptions& options, std::uint64_t session, Inbox& inbox, std::shared_ptr<ReplayControl> playback, Hub::Ask ask)
+      : shared_{options, Hub(fmt::format("gfpd {}", version()), session, std::move(playback), std::move(ask)), {}, 0}, inbox_(inbox), wake_(context_, dup(inbox.wake_file())), acceptor_(context_), pause_(context_) {}
   ~Server() {
     asio::post(context_, [this] {
       for (Socket* socket : shared_.sockets) socket->close();
@@ -276,13 +276,17 @@ class View::Server {
 View::View() = default;
 View::~View() = default;
 
-Result<std::unique_ptr<View>> View::start(const ViewOptions& options, std::uint64_t session, std::shared_ptr<ReplayControl> playback) {
+Result<std::unique_ptr<View>> View::start(const ViewOptions& options, std::uint64_t session, std::shared_ptr<ReplayControl> playback, Ask ask) {
   if (auto valid = view::validate(options); !valid) return tl::unexpected(valid.error());
   std::unique_ptr<View> made(new View());
-  made->server_ = std::make_unique<Server>(options, session, made->inbox_, std::move(playback));
+  Hub::Ask to_daemon;
+  if (ask) to_daemon = [ask = std::move(ask), &inbox = made->inbox_](PeerRequest request) { ask(std::move(request), [&inbox](PeerReply reply) { inbox.put(std::move(reply)); }); };
+  made->server_ = std::make_unique<Server>(options, session, made->inbox_, std::move(playback), std::move(to_daemon));
   if (auto listening = made->server_->listen(); !listening) return tl::unexpected(listening.error());
   return made;
 }
+
+void View::stop() { server_.reset(); }
 
 int View::port() const { return server_->port(); }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 
 #include "gfp/core/error.hpp"
@@ -16,10 +17,15 @@ namespace gfp {
 /// Encodes only what some client has subscribed to.
 class View {
  public:
-  /// `playback`: the knobs of the one recording that is played, for clients to turn; empty: none.
+  /// Takes a client's request to the daemon, on the view's thread; the reply goes to the function beside it, from any thread.
+  using Ask = std::function<void(PeerRequest, std::function<void(PeerReply)>)>;
+
+  /// `playback`: the knobs of the one recording that is played, for clients to turn; empty: none. `ask`: may be empty, then no service is offered.
   /// Errors: kInvalidArgument (options), kIo (the port is taken, no such address).
-  static Result<std::unique_ptr<View>> start(const ViewOptions& options, std::uint64_t session, std::shared_ptr<ReplayControl> playback = {});
-  ~View();  ///< Closes all connections.
+  static Result<std::unique_ptr<View>> start(const ViewOptions& options, std::uint64_t session, std::shared_ptr<ReplayControl> playback = {}, Ask ask = {});
+  ~View();  ///< As stop().
+
+  void stop();  ///< Closes all connections and asks no more; the inbox stays.
 
   Inbox& inbox() { return inbox_; }  ///< Where values are put.
 

@@ -50,6 +50,20 @@ TEST_F(PrimitiveRetype, OverridesAndTakesBack) {
   EXPECT_EQ(run_gfp("primitive show mug --json --primitives " + folder()).lines().at(0)["content_hash"], before["content_hash"]) << "nothing of it is left";
 }
 
+// What a folder has of a class replaces all of it: the class's other built-in primitives come along, so that none is lost.
+TEST_F(PrimitiveRetype, BringsTheOthersOfItsClassAlong) {
+  retype("flat_bottle", "--set regular --vertices 0-3");
+  const auto names = [](const std::string& more) {
+    std::vector<std::string> listed;
+    for (const json& line : run_gfp("primitive list --json " + more).lines())
+      for (const json& primitive : line) listed.push_back(primitive["name"]);
+    return listed;
+  };
+  EXPECT_EQ(names("--primitives " + folder()), names(""));
+  EXPECT_TRUE(fs::exists(folder_ / "own/bottle.gfp"));
+  EXPECT_FALSE(fs::exists(folder_ / "own/mug.gfp"));
+}
+
 // A new build types anew, and keeps what a person said: by skipping, and by another set of models.
 TEST_F(PrimitiveRetype, SurvivesANewBuild) {
   const auto add = [&](int k) {

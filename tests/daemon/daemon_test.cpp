@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <future>
 #include <stdexcept>
 
 #include "gfp/client/control_client.hpp"
@@ -74,6 +75,10 @@ struct Bench {
               Scene shadow = scene;
               shadow.profile = pipeline.shadow;
               return shadow;
+            },
+            [](const std::string& primitive, const std::vector<std::uint32_t>& vertices, std::optional<PointType> type) -> Result<RetypedPrimitive> {
+              if (primitive != "mug") return failure(ErrorCode::kNotFound, "no " + primitive);
+              return RetypedPrimitive{primitive, "mug.gfp", static_cast<int>(vertices.size()), {PointType::kRegular, type.value_or(PointType::kControl)}, {std::nullopt, type}};
             }};
   }
   ControlOptions control() const { return {options.publish.control_endpoints[0], 20s, {}}; }
@@ -122,6 +127,31 @@ TEST(Daemon, AShadowIsPublishedUnderItsMethod) {
   ASSERT_TRUE(shadow.ParseFromArray(message->payload.data(), static_cast<int>(message->payload.size())));
   EXPECT_EQ(shadow.profile(), "superquadric");
   EXPECT_EQ(shadow.objects_size(), 2);
+}
+
+TEST(Daemon, ControlPointsAreSaidByHand) {
+  Bench bench;
+  auto daemon = Daemon::start(bench.options, bench.parts(), 5);
+  ASSERT_TRUE(daemon);
+  std::promise<PeerReply> answered;
+  const auto ask = [&](const std::string& primitive, v1::RetypeRequest::Type type) {
+    answered = {};
+    PeerRequest request;
+    request.peer.identity = "page";
+    request.request.mutable_retype()->set_primitive(primitive);
+    request.request.mutable_retype()->add_vertices(1);
+    request.request.mutable_retype()->set_type(type);
+    (*daemon)->ask(std::move(request), [&](PeerReply reply) { answered.set_value(std::move(reply)); });
+    return answered.get_future().get();
+  };
+  const PeerReply done = ask("mug", v1::RetypeRequest::TYPE_CONTROL);
+  EXPECT_EQ(done.peer.identity, "page");
+  ASSERT_EQ(done.reply.code(), v1::ControlReply::CODE_OK) << done.reply.error();
+  EXPECT_EQ(done.reply.retyped().changed(), 1U);
+  EXPECT_EQ(done.reply.retyped().types(), std::string("\0\1", 2));
+  EXPECT_EQ(done.reply.retyped().manual_types(), std::string("\0\2", 2));
+  EXPECT_EQ(ask("shoe", v1::RetypeRequest::TYPE_CONTROL).reply.code(), v1::ControlReply::CODE_NOT_FOUND);
+  EXPECT_EQ(ask("mug", static_cast<v1::RetypeRequest::Type>(9)).reply.code(), v1::ControlReply::CODE_INVALID);
 }
 
 TEST(Daemon, WithoutASensorOrWithABadOneItDoesNotStart) {

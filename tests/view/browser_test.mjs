@@ -113,4 +113,35 @@ if (energies.length > 1) assert.equal(await page.locator("#details .curve circle
 else assert.match(await page.locator("#details").textContent(), /No contour ran/);
 await page.setViewportSize({ width: 1280, height: 1500 });
 await picture("figures");
+
+// Control points by hand: by part, by click, taken back.
+const mug = await page.evaluate(() => String(window.gfp.state.scene.objects.find(({ className }) => className === "mug").id));
+await page.locator(`#objects li[data-id="${mug}"]`).click();
+await page.locator("#retype").click();
+const summary = page.locator(".retype .summary"), said = page.locator(".retype .said");
+await summary.waitFor();
+const automatic = await summary.textContent();
+assert.match(automatic, /^\d+ of \d+ vertices, 0 of them said by hand\. 0 chosen\.$/);
+assert.ok(await page.locator(".retype button.type").first().isDisabled(), "nothing is chosen yet");
+await page.locator(".retype select").selectOption({ label: "handle" });
+const handle = await page.evaluate(() => window.gfp.retype.chosen.size);
+assert.ok(handle > 20);
+await page.evaluate(() => window.gfp.world.aim());
+await picture("retype");
+await page.getByRole("button", { name: "Control", exact: true }).click();
+await said.getByText(`${handle} changed`).waitFor();
+assert.match(await summary.textContent(), new RegExp(`, ${handle} of them said by hand\\. 0 chosen`));
+const dot = await page.evaluate(() => {
+  const { world, retype } = window.gfp, box = world.canvas.getBoundingClientRect(), positions = retype.dots.geometry.getAttribute("position");
+  const at = world.camera.position.clone().fromBufferAttribute(positions, 10).applyMatrix4(retype.dots.matrixWorld).project(world.camera);
+  return [box.left + (0.5 + 0.5 * at.x) * box.width, box.top + (0.5 - 0.5 * at.y) * box.height];
+});
+await page.mouse.click(...dot);
+assert.equal(await page.evaluate(() => window.gfp.retype.chosen.size), 1, "a click near a dot chooses one");
+await page.getByRole("button", { name: "None", exact: true }).click();
+await page.locator(".retype select").selectOption({ label: "handle" });
+await page.getByRole("button", { name: "By itself", exact: true }).click();
+await page.waitForFunction((before) => document.querySelector(".retype .summary").textContent === before, automatic);
+await page.getByRole("button", { name: "Done", exact: true }).click();
+assert.ok(await page.locator("#retype").isVisible());
 await close();

@@ -1,8 +1,9 @@
 // The view as an independent client sees it: @foxglove/ws-protocol over both subprotocols, payloads decoded with the schemas that the
 // server sends and nothing else.   node conformance_test.mjs PORT
 import assert from "node:assert/strict";
+import { execFileSync } from "node:child_process";
 import http from "node:http";
-import { createFileRegistry, fromBinary } from "@bufbuild/protobuf";
+import { create, createFileRegistry, fromBinary, toBinary } from "@bufbuild/protobuf";
 import { FileDescriptorSetSchema } from "@bufbuild/protobuf/wkt";
 import protocol from "@foxglove/ws-protocol";
 import { WebSocket } from "ws";
@@ -66,6 +67,39 @@ for (const subprotocol of ["foxglove.websocket.v1", "foxglove.sdk.v1"]) {
   for (const object of scene.objects) assert.equal(object.vertices.positions.length, 6 * object.vertices.count, "int16 positions");
   const entity = heard.get("/gfp/markers/").entities[0];
   assert.ok(entity.triangles[0].indices.length >= 12 && entity.lifetime.seconds === 3n && entity.frameId === "virtual_optical");
+}
+
+// Control points by hand, as a call of a service: asked for, said, refused.
+{
+  const client = new FoxgloveClient({ ws: new WebSocket(url, ["foxglove.sdk.v1"]) });
+  const [service] = await within("the services", new Promise((resolve) => client.on("advertiseServices", resolve)));
+  assert.deepEqual([service.name, service.type], ["/gfp/primitive/retype", "gfp.v1.RetypeRequest"]);
+  const messageOf = ({ schema, schemaName }) => createFileRegistry(fromBinary(FileDescriptorSetSchema, Buffer.from(schema, "base64"))).getMessage(schemaName);
+  const [Request, Response] = [service.request, service.response].map(messageOf);
+  let callId = 0;
+  const call = (fields, serviceId = service.id) => {
+    const id = ++callId;
+    client.sendServiceCallRequest({ serviceId, callId: id, encoding: "protobuf", data: new DataView(toBinary(Request, create(Request, fields)).slice().buffer) });
+    return within("an answer", new Promise((resolve) => {
+      client.on("serviceCallResponse", (answer) => answer.callId === id && resolve(fromBinary(Response, new Uint8Array(answer.data.buffer, answer.data.byteOffset, answer.data.byteLength))));
+      client.on("serviceCallFailure", (failed) => failed.callId === id && resolve(failed.message));
+    }));
+  };
+  const before = await call({ primitive: "mug" });
+  assert.equal(before.file, "");
+  assert.ok(before.types.length > 100 && before.manualTypes.length === before.types.length && before.manualTypes.every((type) => type === 0));
+  const flip = before.types.findIndex((type) => type === 0);
+  const after = await call({ primitive: "mug", vertices: [flip], type: 2 });
+  assert.deepEqual([after.changed, after.types[flip], after.manualTypes[flip]], [1, 1, 2]);
+  const kept = JSON.parse(execFileSync(process.env.GFP_TOOL, ["primitive", "retype", "mug", "--primitives", process.env.GFP_PRIMITIVES, "--json"]));
+  assert.deepEqual(kept.manual.map(({ vertex, type }) => [vertex, type]), [[flip, "control"]]);
+  assert.deepEqual([...(await call({ primitive: "mug", vertices: [flip], type: 0 })).types], [...before.types]);
+  assert.match(await call({ primitive: "zeppelin" }), /class = zeppelin/);
+  assert.match(await call({ primitive: "mug", vertices: [before.types.length], type: 1 }), /expected below/);
+  assert.match(await call({ primitive: "mug", vertices: [1], type: 7 }), /type = 7/);
+  assert.equal(await call({}, 99), "no service 99");
+  assert.deepEqual([...(await call({ primitive: "mug" })).manualTypes], [...before.manualTypes]);
+  client.close();
 }
 
 // Several offered: the newer; none of ours: no connection.

@@ -23,6 +23,7 @@ struct Viewer {
     while (const auto next = client.take()) {
       if (next->is_text) heard(Json::parse(next->head));
       else if (next->head[0] == '\2') times.push_back(next->head);
+      else if (next->head[0] == '\3') answers.push_back(next->head);
       else if (next->head[0] == '\5') states.push_back(next->head);
       else payloads[topics.at(static_cast<std::uint8_t>(next->head[1]))].push_back(*next->payload);
     }
@@ -40,13 +41,15 @@ struct Viewer {
   std::map<int, std::string> topics;
   std::map<std::string, std::vector<std::string>> payloads;
   std::vector<Json> statuses;
-  std::vector<std::string> times, states;  ///< Binary messages 2 and 5.
+  std::vector<std::string> times, answers, states;  ///< Binary messages 2, 3 and 5.
+  std::vector<Json> failures;                       ///< Of service calls.
 
  private:
   void heard(const Json& message) {
     if (message["op"] == "advertise")
       for (const Json& channel : message["channels"]) channels[channel["topic"]] = channel["id"];
     if (message["op"] == "status") statuses.push_back(message);
+    if (message["op"] == "serviceCallFailure") failures.push_back(message);
   }
   Hub& hub_;
 };
@@ -151,6 +154,76 @@ TEST(Hub, WithoutARecordingNothingIsSteered) {
   viewer.read();
   EXPECT_TRUE(viewer.states.empty());
   EXPECT_EQ(viewer.statuses.size(), 3U);
+}
+
+/// A call of service `id` with the client's number 7.
+std::string service_call(std::uint32_t id, const std::string& payload) {
+  std::string bytes(13, '\0');
+  bytes[0] = '\2';
+  bytes[1] = static_cast<char>(id);
+  bytes[5] = '\7';
+  bytes[9] = '\x08';
+  return bytes + "protobuf" + payload;
+}
+
+TEST(Hub, ACallGoesToTheDaemonAndItsAnswerToWhoAsked) {
+  std::vector<PeerRequest> asked;
+  Hub hub("gfpd", 1, {}, [&](PeerRequest request) { asked.push_back(std::move(request)); });
+  Viewer caller(hub), other(hub);
+  v1::RetypeRequest request;
+  request.set_primitive("mug");
+  request.add_vertices(3);
+  hub.heard_binary(caller.client, service_call(1, request.SerializeAsString()));
+  ASSERT_EQ(asked.size(), 1U);
+  EXPECT_EQ(asked[0].request.retype().primitive(), "mug");
+  Inbox::Content content;
+  content.replies.push_back({asked[0].peer, {}});
+  content.replies[0].reply.mutable_retyped()->set_changed(1);
+  hub.take(content);
+  hub.take(content);  // a second answer to one question
+  for (Viewer* viewer : {&caller, &other}) viewer->read();
+  EXPECT_EQ(caller.answers, (std::vector<std::string>{service_response(1, 7, content.replies[0].reply.retyped().SerializeAsString())}));
+  EXPECT_TRUE(other.answers.empty());
+  EXPECT_EQ(service_response(1, 7, "ab"), std::string("\3\1\0\0\0\7\0\0\0\x08\0\0\0protobufab", 23));
+}
+
+TEST(Hub, WhatIsWrongWithACallItsCallerIsTold) {
+  int asked = 0;
+  Hub hub("gfpd", 1, {}, [&](const PeerRequest&) { ++asked; });
+  Viewer caller(hub);
+  hub.heard_binary(caller.client, service_call(9, ""));
+  hub.heard_binary(caller.client, service_call(1, "\xff\xff"));
+  caller.read();
+  EXPECT_EQ(caller.failures.size(), 2U);
+  for (int i = 0; i < 20; ++i) hub.heard_binary(caller.client, service_call(1, ""));
+  caller.read();
+  EXPECT_EQ(asked, 16) << "more do not wait";
+  EXPECT_EQ(caller.failures.size(), 6U);
+  hub.heard_binary(caller.client, std::string("\2\1\0\0\0\7\0\0\0\4\0\0\0json{}", 19));
+  hub.heard_binary(caller.client, std::string("\2\1\0\0\0\7\0\0\0\xff\xff\xff\xffprotobuf", 21));
+  caller.read();
+  EXPECT_EQ(caller.statuses.size(), 2U);
+  {
+    Viewer gone(hub);
+  }
+  Hub without("gfpd", 1);
+  Viewer viewer(without);
+  without.heard_binary(viewer.client, service_call(1, ""));
+  viewer.read();
+  EXPECT_EQ(viewer.failures.size(), 1U);
+}
+
+TEST(Hub, AnAnswerToWhoHasGoneIsDropped) {
+  std::vector<PeerRequest> asked;
+  Hub hub("gfpd", 1, {}, [&](PeerRequest request) { asked.push_back(std::move(request)); });
+  {
+    Viewer gone(hub);
+    hub.heard_binary(gone.client, service_call(1, ""));
+  }
+  Inbox::Content content;
+  content.replies.push_back({asked.at(0).peer, {}});
+  hub.take(std::move(content));  // no client is touched that is no more
+  EXPECT_EQ(hub.clients(), 0U);
 }
 
 TEST(Hub, AShadowHasAChannelOfItsOwn) {

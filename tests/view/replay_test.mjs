@@ -64,7 +64,7 @@ const viewer = new Viewer();
 await viewer.until("serverInfo", () => viewer.info);
 const nanoseconds = ({ sec, nsec }) => BigInt(sec) * 1_000_000_000n + BigInt(nsec);
 const begin = nanoseconds(viewer.info.dataStartTime), end = nanoseconds(viewer.info.dataEndTime);
-assert.deepEqual(viewer.info.capabilities, ["time", "playbackControl"]);
+assert.deepEqual(viewer.info.capabilities, ["time", "playbackControl", "services"]);
 assert.ok(end - begin > 1_000_000_000n && end - begin < 60_000_000_000n, `${end - begin} ns recorded`);
 
 // Paused at once, wherever it is; a seek shows its frame; times are those of recording.

@@ -88,10 +88,14 @@ def main():
         skip("/usr/bin/chromium is not installed")
     script = fetch_packages()
     with tempfile.TemporaryDirectory() as folder:
+        primitives = pathlib.Path(folder, "primitives")
+        gfp = pathlib.Path(GFPD).parents[1] / "cli" / "gfp"
+        subprocess.run([gfp, "primitive", "retype", "mug", "--primitives", primitives, "--set", "auto"], check=True, stdout=subprocess.DEVNULL)
+        os.environ.update(GFP_TOOL=str(gfp), GFP_PRIMITIVES=str(primitives))
         if "replay" in SCRIPT:
             text = f"sensors: [{{name: virtual, driver: replay, input: {record(folder)}}}]"
         else:
-            text = f"sensors: [{SENSOR}]\npipeline: {{shadow: superquadric}}"
+            text = f"sensors: [{SENSOR}]\npipeline: {{shadow: superquadric}}\nprimitives: {primitives}"
         daemon = Daemon(folder, text)
         try:
             page = urllib.request.urlopen(urllib.request.Request(f"http://127.0.0.1:{daemon.port}/", headers={"Accept-Encoding": "gzip"})).read()
