@@ -29,6 +29,7 @@ std::string describe(const EvalArguments& a) {
   if (a.families) text << "families (" << a.cases.instances << " instances, free form " << a.cases.free_form << ") ";
   text << "class " << (a.class_estimated ? "estimated" : "known") << ", mask " << a.mask << ", views " << a.cases.views << ", elevation";
   for (const double elevation : a.cases.elevations_deg) text << ' ' << elevation;
+  if (a.cases.cameras > 1) text << ", cameras " << a.cases.cameras;
   text << ", occlusion " << a.cases.occlusion << ", noise " << a.noise;
   if (a.upsampling > 0) text << ", upsampling " << a.upsampling;
   if (!a.primitives.empty()) text << ", own primitives " << std::filesystem::path(a.primitives).lexically_normal().filename().string();
@@ -108,6 +109,7 @@ void add_eval_command(CLI::App& app, ExitStatus& status) {
   eval->add_flag("--class-estimated", a.class_estimated, "Let the pipeline find the class")->excludes(known);
   eval->add_option("--views", a.cases.views, "Yaws per object and elevation")->check(CLI::Range(1, 360))->capture_default_str();
   eval->add_option("--elevation", a.cases.elevations_deg, "Camera elevations above the table, degrees")->delimiter(',')->check(CLI::Range(5.0, 85.0))->capture_default_str();
+  eval->add_option("--cameras", a.cases.cameras, "Standpoints, evenly around the object, whose views gfp_robust fits together; of posed frames so many")->check(CLI::Range(1, 8))->capture_default_str();
   eval->add_option("--occlusion", a.cases.occlusion, "Share of the object's pixels that a nearer box hides")->check(CLI::Range(0.0, 0.9))->capture_default_str();
   eval->add_option("--noise", a.noise, "The virtual camera's errors")->check(CLI::IsMember({"kinect", "none"}))->capture_default_str();
   eval->add_option("--mask", a.mask, "The object's pixels: found by the pipeline's segmentation, or given")->check(CLI::IsMember({"segmented", "truth"}))->capture_default_str();

@@ -1,5 +1,6 @@
 #include "observe_case.hpp"
 
+#include <memory>
 #include <utility>
 
 namespace gfp {
@@ -14,9 +15,8 @@ double overlap(const Segment& segment, const Image<std::uint8_t>& mask, int obje
   return all > 0 ? static_cast<double>(common) / all : 0.0;
 }
 
-}  // namespace
-
-CaseObservation observe_case(const EvaluationCase& shown, const PipelineOptions& options, bool mask_from_truth) {
+/// One frame of a case as the pipeline's front end sees it.
+CaseObservation observe_frame(const MaskedFrame& shown, const PipelineOptions& options, bool mask_from_truth) {
   const Frame& frame = shown.frame;
   const OrganizedCloud cloud = depth_to_cloud(frame.depth, frame.camera, options.cloud);
   CaseObservation observation;
@@ -37,6 +37,19 @@ CaseObservation observe_case(const EvaluationCase& shown, const PipelineOptions&
   const NormalMap normals = estimate_normals(cloud, options.normals, regions);
   std::vector<ObjectView> views = associate(segments, cloud, normals, frame, {}, options.memory);
   observation.view = std::move(views[best]);
+  return observation;
+}
+
+}  // namespace
+
+CaseObservation observe_case(const EvaluationCase& shown, const PipelineOptions& options, bool mask_from_truth) {
+  CaseObservation observation = observe_frame(shown, options, mask_from_truth);
+  if (!observation.view) return observation;
+  for (const MaskedFrame& other : shown.elsewhere) {
+    CaseObservation seen = observe_frame(other, options, mask_from_truth);
+    if (!seen.view) continue;
+    observation.view->field.push_back({other.frame.T_world_sensor.inverse() * shown.frame.T_world_sensor, std::make_shared<const ObjectView>(std::move(*seen.view))});
+  }
   return observation;
 }
 

@@ -16,7 +16,7 @@ struct CaseObservation {
 };
 
 /// Cloud, segmentation (with the true mask as the user's where `mask_from_truth`), normals, and the view of the segment that
-/// overlaps the object best.
+/// overlaps the object best; what the other standpoints show of it becomes its field.
 CaseObservation observe_case(const EvaluationCase& shown, const PipelineOptions& options, bool mask_from_truth);
 
 }  // namespace gfp

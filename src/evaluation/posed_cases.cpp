@@ -98,15 +98,15 @@ Result<std::vector<PosedFrame>> parse_frames(const Json& poses, const std::files
   return frames;
 }
 
-Result<EvaluationCase> make_posed_case(const PosedFrame& posed, std::size_t index) {
+/// The frame in the object's frame as its world, and the pixels that show the object.
+Result<MaskedFrame> read_posed_frame(const PosedFrame& posed, const PosedObject& object) {
   auto depth = read_png_depth(posed.stem.string() + "-depth.png");
   if (!depth) return tl::unexpected(depth.error());
   auto labels = read_png_grey(posed.stem.string() + "-label.png");
   if (!labels) return tl::unexpected(labels.error());
   if (labels->width != depth->width || labels->height != depth->height)
     return failure(ErrorCode::kCorruptData, posed.stem.string() + "-label.png: " + std::to_string(labels->width) + "x" + std::to_string(labels->height) + ", expected the depth image's size");
-  const PosedObject& object = posed.objects[index];
-  EvaluationCase result;
+  MaskedFrame result;
   result.frame.sensor = "posed";
   result.frame.camera = posed.camera;
   result.frame.camera.width = depth->width;
@@ -114,6 +114,31 @@ Result<EvaluationCase> make_posed_case(const PosedFrame& posed, std::size_t inde
   result.frame.depth = {std::move(*depth), posed.depth_scale_m};
   result.object_mask = std::move(*labels);
   for (auto& pixel : result.object_mask.pixels) pixel = pixel == object.label ? 255 : 0;
+  result.frame.T_world_sensor = object.T_camera_object.inverse();
+  return result;
+}
+
+const PosedObject* find_object(const PosedFrame& posed, const ShapePtr& shape) {
+  const auto found = std::find_if(posed.objects.begin(), posed.objects.end(), [&](const PosedObject& object) { return object.shape == shape; });
+  return found != posed.objects.end() ? &*found : nullptr;
+}
+
+/// Frame `number` and, for `cameras` > 1, frames evenly spaced behind it that show the object too.
+Result<EvaluationCase> make_posed_case(const std::vector<PosedFrame>& frames, std::size_t number, std::size_t index, std::size_t cameras) {
+  const PosedFrame& posed = frames[number];
+  const PosedObject& object = posed.objects[index];
+  auto shown = read_posed_frame(posed, object);
+  if (!shown) return tl::unexpected(shown.error());
+  EvaluationCase result;
+  static_cast<MaskedFrame&>(result) = std::move(*shown);
+  for (std::size_t k = 1; k < cameras; ++k) {
+    const PosedFrame& other = frames[(number + k * frames.size() / cameras) % frames.size()];
+    const PosedObject* there = find_object(other, object.shape);
+    if (!there || &other == &posed) continue;
+    auto seen = read_posed_frame(other, *there);
+    if (!seen) return tl::unexpected(seen.error());
+    result.elsewhere.push_back(std::move(*seen));
+  }
   std::vector<TriangleTree> others;
   for (std::size_t i = 0; i < posed.objects.size(); ++i) {
     if (i == index) continue;
@@ -135,12 +160,14 @@ Result<std::vector<CaseSpec>> list_posed_cases(const std::filesystem::path& fold
     auto frames = parse_frames(Json::parse(*text), folder, options.truth);
     if (!frames) return tl::unexpected(frames.error());
     std::vector<CaseSpec> specs;
-    for (PosedFrame& parsed : *frames) {
-      const auto frame = std::make_shared<const PosedFrame>(std::move(parsed));
-      for (std::size_t i = 0; i < frame->objects.size(); ++i) {
-        const TruthShape& shape = *frame->objects[i].shape;
+    const auto all = std::make_shared<const std::vector<PosedFrame>>(std::move(*frames));
+    for (std::size_t n = 0; n < all->size(); ++n) {
+      const PosedFrame& frame = (*all)[n];
+      for (std::size_t i = 0; i < frame.objects.size(); ++i) {
+        const TruthShape& shape = *frame.objects[i].shape;
         if (!options.wants(shape.class_name, shape.name)) continue;
-        specs.push_back({"frames", shape.name, frame->stem.filename().string(), shape.class_name, [frame, i] { return make_posed_case(*frame, i); }});
+        specs.push_back({"frames", shape.name, frame.stem.filename().string(), shape.class_name,
+                         [all, n, i, cameras = static_cast<std::size_t>(options.cameras)] { return make_posed_case(*all, n, i, cameras); }});
       }
     }
     return specs;

@@ -13,6 +13,7 @@ namespace gfp {
 namespace {
 
 constexpr double kRadians = std::numbers::pi / 180;
+constexpr double kFirstAzimuth = -0.5 * std::numbers::pi;
 
 Image<std::uint8_t> mask_of(const Image<std::int32_t>& labels, std::int32_t object) {
   Image<std::uint8_t> mask(labels.width, labels.height, 0);
@@ -31,7 +32,7 @@ std::string view_name(const TableViewpoint& viewpoint) {
 EvaluationCase make_table_case(const std::shared_ptr<const TruthShape>& shape, const TableViewpoint& viewpoint, const CaseOptions& options, std::uint64_t seed) {
   const CameraModel camera = default_kinect_camera();
   const Eigen::Vector3d target(0, 0, 0.5 * bounds(shape->mesh.vertices).high.z());
-  const Transform T_world_camera = look_at_pose(target, options.distance_m, viewpoint.elevation_deg * kRadians, -0.5 * std::numbers::pi);
+  const Transform T_world_camera = look_at_pose(target, options.distance_m, viewpoint.elevation_deg * kRadians, kFirstAzimuth);
 
   VirtualScene scene;
   PlacedMesh object{shape->name, shape->class_name, shape->mesh, Transform::Identity(), {200, 200, 190}};
@@ -57,6 +58,11 @@ EvaluationCase make_table_case(const std::shared_ptr<const TruthShape>& shape, c
   result.truth.shape = shape;
   result.truth.T_camera_object = shot.truth.T_camera_object.front();
   result.truth.visible = visible_samples(*shape, result.truth.T_camera_object, camera, others);
+  for (int k = 1; k < options.cameras; ++k) {
+    const double azimuth = kFirstAzimuth + 2 * std::numbers::pi * k / options.cameras;
+    Capture other = capture(scene, camera, look_at_pose(target, options.distance_m, viewpoint.elevation_deg * kRadians, azimuth), sensor, seed + static_cast<std::uint64_t>(k));
+    result.elsewhere.push_back({std::move(other.frame), mask_of(other.truth.labels, 0)});
+  }
   return result;
 }
 

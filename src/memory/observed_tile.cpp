@@ -10,17 +10,15 @@ constexpr double kLeastCosine = 0.2;  ///< Normals of grazing pixels are too unc
 
 std::size_t at(int index) { return static_cast<std::size_t>(index); }
 
-}  // namespace
-
-ObservedTile observe(const ObjectView& view, int target_cells) {
+ObservedTile observe_from(const ObjectView& view, const Transform& T_camera_support, int target_cells) {
   ObservedTile tile;
   tile.camera = view.camera;
-  tile.T_camera_support = view.T_camera_support;
+  tile.T_camera_support = T_camera_support;
   tile.rect = view.tile;
   tile.step = std::max(1, static_cast<int>(std::lround(std::sqrt(view.object_pixels / std::max(1.0, static_cast<double>(target_cells))))));
   tile.width = (view.tile.width() + tile.step - 1) / tile.step;
   tile.height = (view.tile.height() + tile.step - 1) / tile.step;
-  const Transform T_support_camera = view.T_camera_support.inverse();
+  const Transform T_support_camera = T_camera_support.inverse();
   const std::size_t cells = at(tile.cells());
   tile.depth.assign(cells, 0);
   tile.evidence.assign(cells, Evidence::kUnknown);
@@ -44,6 +42,16 @@ ObservedTile observe(const ObjectView& view, int target_cells) {
     if (tile.normals[at(cell)].squaredNorm() > 0.5) tile.cosine[at(cell)] = static_cast<float>(std::max(kLeastCosine, cosine));
   }
   return tile;
+}
+
+}  // namespace
+
+ObservedTile observe(const ObjectView& view, int target_cells) { return observe_from(view, view.T_camera_support, target_cells); }
+
+std::vector<ObservedTile> observe_field(const ObjectView& view, int target_cells) {
+  std::vector<ObservedTile> tiles{observe(view, target_cells)};
+  for (const Sighting& sighting : view.field) tiles.push_back(observe_from(*sighting.view, sighting.T_sighting_camera * view.T_camera_support, target_cells));
+  return tiles;
 }
 
 }  // namespace gfp

@@ -81,9 +81,7 @@ double deepest_inside(const std::vector<Eigen::Vector2d>& outline, const std::ve
 }
 
 void mark_observed(const ObservedTile& tile, const DepthTile& rendered, const std::vector<Vector3d>& vertices_camera, std::vector<std::uint8_t>& states) {
-  states.resize(vertices_camera.size(), 0);
   for (std::size_t i = 0; i < vertices_camera.size(); ++i) {
-    states[i] = static_cast<std::uint8_t>(states[i] & ~kVertexObserved);
     const Vector3d& p = vertices_camera[i];
     if (p.z() <= 0) continue;
     const Eigen::Vector2d pixel = tile.camera.project(p);
@@ -102,11 +100,10 @@ void mark_observed(const ObservedTile& tile, const DepthTile& rendered, const st
   }
 }
 
-}  // namespace
-
-FitEvidence evaluate_fit(const ObjectView& view, const std::vector<Vector3d>& vertices_camera, const std::vector<Triangle>& triangles,
-                         std::vector<std::uint8_t>& states) {
-  const ObservedTile tile = observe(view, kEvidenceCells);
+/// What one of the views says, in FitEvidence's terms; marks the vertices that it shows.
+FitEvidence evaluate_tile(const ObservedTile& tile, const std::vector<Vector3d>& vertices_support, const std::vector<Triangle>& triangles,
+                          std::vector<std::uint8_t>& states) {
+  const std::vector<Vector3d> vertices_camera = transformed(vertices_support, tile.T_camera_support);
   const DepthTile rendered = render(tile, vertices_camera, triangles);
   mark_observed(tile, rendered, vertices_camera, states);
   const ImageScore score = image_score(tile, rendered);
@@ -117,7 +114,40 @@ FitEvidence evaluate_fit(const ObjectView& view, const std::vector<Vector3d>& ve
   evidence.silhouette_iou = score.silhouette_iou;
   evidence.cost = score.cost;
   evidence.fit_similarity = fit_similarity(tile, rendered, vertices_camera, triangles);
+  return evidence;
+}
+
+/// Means over the views, each as heavy as the object's cells in it.
+FitEvidence pooled(const std::vector<FitEvidence>& of_views, const std::vector<ObservedTile>& tiles) {
+  if (of_views.size() == 1) return of_views.front();
+  double cells = 0;
+  for (const ObservedTile& tile : tiles) cells += static_cast<double>(tile.object_cells.size());
+  FitEvidence mean;
+  for (std::size_t k = 0; k < tiles.size(); ++k) {
+    const FitEvidence& seen = of_views[k];
+    const double share = static_cast<double>(tiles[k].object_cells.size()) / std::max(1.0, cells);
+    mean.rms_m += share * seen.rms_m * seen.rms_m;
+    mean.explained += share * seen.explained;
+    mean.free_space_violation += share * seen.free_space_violation;
+    mean.silhouette_iou += share * seen.silhouette_iou;
+    mean.cost += share * seen.cost;
+    mean.fit_similarity += share * seen.fit_similarity;
+  }
+  mean.rms_m = std::sqrt(mean.rms_m);
+  return mean;
+}
+
+}  // namespace
+
+FitEvidence evaluate_fit(const ObjectView& view, const std::vector<Vector3d>& vertices_camera, const std::vector<Triangle>& triangles,
+                         std::vector<std::uint8_t>& states) {
   const auto vertices = transformed(vertices_camera, view.T_camera_support.inverse());
+  states.resize(vertices.size(), 0);
+  for (std::uint8_t& state : states) state = static_cast<std::uint8_t>(state & ~kVertexObserved);
+  const std::vector<ObservedTile> tiles = observe_field(view, kEvidenceCells);
+  std::vector<FitEvidence> of_views;
+  for (const ObservedTile& tile : tiles) of_views.push_back(evaluate_tile(tile, vertices, triangles, states));
+  FitEvidence evidence = pooled(of_views, tiles);
   if (view.has_support)
     for (const Vector3d& p : vertices) evidence.below_support_m = std::max(evidence.below_support_m, -p.z());
   for (const auto& outline : view.neighbour_footprints) evidence.neighbour_overlap_m = std::max(evidence.neighbour_overlap_m, deepest_inside(outline, vertices));

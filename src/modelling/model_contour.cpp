@@ -52,9 +52,7 @@ void run_contour(const ObjectView& view, const Primitive& primitive, const Model
   double gate = kFirstGateM;
   while (contour.iterations < options.max_iterations && !contour.settled) {
     const auto normals = vertex_normals({contour.vertices, triangles});
-    std::vector<Vector3d> normals_camera;
-    for (const auto& n : normals) normals_camera.emplace_back(view.T_camera_support.linear() * n);
-    contour.data = surface_targets(view, transformed(contour.vertices, view.T_camera_support), normals_camera, triangles, gate);
+    contour.data = surface_targets(view, contour.vertices, normals, triangles, gate);
     SurfaceTargets targets = contour.data;
     // Targets count from where the vertex is now; the solver's count from rest.
     for (std::size_t i = 0; i < targets.distance_m.size(); ++i)

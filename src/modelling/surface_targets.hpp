@@ -17,9 +17,10 @@ struct SurfaceTargets {
 
 /// Compares a rendered surface with the readings pixel by pixel and hands every difference to the three vertices of the triangle
 /// that was hit, by barycentric weight: like is compared with like, so curvature brings no bias, and what is hidden gets nothing.
-/// @param vertices_camera  posed surface, metres, camera frame.
+/// The view's field has its say as well.
+/// @param vertices_support  posed surface, metres, support frame of the view.
 /// @param gate_m  differences beyond this along the normal are another surface.
-SurfaceTargets surface_targets(const ObjectView& view, const std::vector<Eigen::Vector3d>& vertices_camera, const std::vector<Eigen::Vector3d>& normals_camera,
+SurfaceTargets surface_targets(const ObjectView& view, const std::vector<Eigen::Vector3d>& vertices_support, const std::vector<Eigen::Vector3d>& normals_support,
                                const std::vector<Triangle>& triangles, double gate_m);
 
 }  // namespace gfp

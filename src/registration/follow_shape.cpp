@@ -25,8 +25,8 @@ Primitive rigid_body(const std::vector<Eigen::Vector3d>& vertices, const std::sh
 FollowedPose follow_shape(const ObjectView& view, const std::vector<Eigen::Vector3d>& vertices, const std::shared_ptr<const Topology>& topology,
                           const Transform& T_camera_object, const RegistrationOptions& options) {
   const Primitive body = rigid_body(vertices, topology);
-  const SearchTile tile(observe(view, options.sample_pixels));
-  VisibleFit fit(tile, body, view.has_support);
+  const SearchTile now(observe(view, options.sample_pixels));  // what it was seen like before says nothing of where it is
+  VisibleFit fit({&now, 1}, body, view.has_support);
   PoseState state;
   state.T_support_object = view.T_camera_support.inverse() * T_camera_object;
   fit.pose(state);

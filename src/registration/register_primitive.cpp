@@ -147,10 +147,10 @@ struct Contender {
 class Race {
  public:
   Race(const ObjectView& view, std::span<const Hypothesis> hypotheses, const RegistrationOptions& options)
-      : view_(view), hypotheses_(hypotheses), options_(options), fine_tile_(observe(view, options.sample_pixels)), coarse_tile_(observe(view, kSearchCells)) {
+      : view_(view), hypotheses_(hypotheses), options_(options), fine_tiles_(search_tiles(view, options.sample_pixels)), coarse_tiles_(search_tiles(view, kSearchCells)) {
     for (const Hypothesis& hypothesis : hypotheses) {
-      coarse_.emplace_back(coarse_tile_, *hypothesis.primitive, view.has_support);
-      fine_.emplace_back(fine_tile_, *hypothesis.primitive, view.has_support);
+      coarse_.emplace_back(coarse_tiles_, *hypothesis.primitive, view.has_support);
+      fine_.emplace_back(fine_tiles_, *hypothesis.primitive, view.has_support);
     }
   }
 
@@ -165,7 +165,7 @@ class Race {
   }
 
   void search() {
-    const ObservedExtent extent = observed_extent(view_, coarse_tile_);
+    const ObservedExtent extent = observed_extent(view_, coarse_tiles_.front());
     std::vector<std::vector<Contender>> found(hypotheses_.size());
     oneapi::tbb::parallel_for(std::size_t{0}, hypotheses_.size(), [&](std::size_t h) { found[h] = scan(h, extent); });
     for (auto& of_hypothesis : found) std::move(of_hypothesis.begin(), of_hypothesis.end(), std::back_inserter(contenders_));
@@ -257,7 +257,7 @@ class Race {
   const ObjectView& view_;
   std::span<const Hypothesis> hypotheses_;
   const RegistrationOptions& options_;
-  SearchTile fine_tile_, coarse_tile_;
+  std::vector<SearchTile> fine_tiles_, coarse_tiles_;
   std::vector<VisibleFit> coarse_, fine_;
   std::vector<Contender> contenders_;
 };

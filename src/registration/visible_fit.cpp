@@ -62,9 +62,18 @@ SearchTile::SearchTile(ObservedTile observed) : ObservedTile(std::move(observed)
   }
 }
 
-VisibleFit::VisibleFit(const SearchTile& tile, const Primitive& primitive, bool has_support)
-    : tile_(tile), primitive_(primitive), has_support_(has_support), size_information_(primitive.log_size_covariance.inverse()),
-      camera_support_(tile.T_camera_support.inverse().translation()) {}
+std::vector<SearchTile> search_tiles(const ObjectView& view, int target_cells) {
+  std::vector<SearchTile> tiles;
+  for (ObservedTile& observed : observe_field(view, target_cells)) tiles.emplace_back(std::move(observed));
+  return tiles;
+}
+
+Vector3d VisibleFit::Rendering::point_support(int cell) const { return camera_support + tile->rays[at(cell)] * static_cast<double>(depth.depth[at(cell)]); }
+
+VisibleFit::VisibleFit(std::span<const SearchTile> tiles, const Primitive& primitive, bool has_support)
+    : primitive_(primitive), has_support_(has_support), size_information_(primitive.log_size_covariance.inverse()) {
+  for (const SearchTile& tile : tiles) renderings_.push_back({&tile, tile.T_camera_support.inverse().translation(), std::vector<Vector3d>(primitive.size()), {}});
+}
 
 void VisibleFit::pose(const PoseState& state) {
   state_ = state;
@@ -73,13 +82,26 @@ void VisibleFit::pose(const PoseState& state) {
   canonical_ = primitive_.mean;
   for (Eigen::Index k = 0; k < state.modes.size(); ++k)
     if (state.modes[k] != 0) add_scaled(primitive_.modes[at(static_cast<int>(k))].front().data(), state.modes[k], 3 * count, canonical_.front().data());
-  camera_.resize(count);
   support_linear_ = state.T_support_object.linear() * size_.asDiagonal();
-  const Eigen::Matrix3d linear = tile_.T_camera_support.linear() * support_linear_;
-  const Vector3d offset = tile_.T_camera_support * state.T_support_object.translation();
-  transform_points(canonical_.front().data(), count, linear.data(), offset.data(), camera_.front().data());
-  rendered_.reset(tile_.rect, tile_.step);
-  rasterise(camera_, primitive_.topology->triangles, tile_.camera, rendered_, {.cull_back = true});
+  for (Rendering& seen : renderings_) {
+    const SearchTile& tile = *seen.tile;
+    const Eigen::Matrix3d linear = tile.T_camera_support.linear() * support_linear_;
+    const Vector3d offset = tile.T_camera_support * state.T_support_object.translation();
+    transform_points(canonical_.front().data(), count, linear.data(), offset.data(), seen.camera.front().data());
+    seen.depth.reset(tile.rect, tile.step);
+    rasterise(seen.camera, primitive_.topology->triangles, tile.camera, seen.depth, {.cull_back = true});
+  }
+}
+
+double VisibleFit::score(double model_sigma_m) const {
+  if (renderings_.size() == 1) return image_score(*renderings_.front().tile, renderings_.front().depth, model_sigma_m).cost;
+  double sum = 0, cells = 0;
+  for (const Rendering& seen : renderings_) {
+    const auto count = static_cast<double>(seen.tile->object_cells.size());
+    sum += count * image_score(*seen.tile, seen.depth, model_sigma_m).cost;
+    cells += count;
+  }
+  return sum / std::max(1.0, cells);
 }
 
 Vector3d VisibleFit::support_point(std::size_t vertex) const { return support_linear_ * canonical_[vertex] + state_.T_support_object.translation(); }
@@ -91,36 +113,39 @@ Bounds VisibleFit::bounds_support() const {
 }
 
 Vector3d VisibleFit::visible_centroid_shift() const {
+  const Rendering& seen = renderings_.front();
   Vector3d observed = Vector3d::Zero(), modelled = Vector3d::Zero();
   int count = 0;
-  for (int cell = 0; cell < tile_.cells(); ++cell) {
-    if (!rendered_.hit(cell)) continue;
-    modelled += camera_support_ + tile_.rays[at(cell)] * static_cast<double>(rendered_.depth[at(cell)]);
+  for (int cell = 0; cell < seen.tile->cells(); ++cell) {
+    if (!seen.depth.hit(cell)) continue;
+    modelled += seen.point_support(cell);
     ++count;
   }
-  for (const int cell : tile_.object_cells) observed += tile_.points[at(cell)];
-  if (count == 0 || tile_.object_cells.empty()) return Vector3d::Zero();
-  return observed / static_cast<double>(tile_.object_cells.size()) - modelled / static_cast<double>(count);
+  for (const int cell : seen.tile->object_cells) observed += seen.tile->points[at(cell)];
+  if (count == 0 || seen.tile->object_cells.empty()) return Vector3d::Zero();
+  return observed / static_cast<double>(seen.tile->object_cells.size()) - modelled / static_cast<double>(count);
 }
 
 Vector3d VisibleFit::overlap_shift() const {
+  const Rendering& seen = renderings_.front();
   Vector3d sum = Vector3d::Zero();
   int count = 0;
-  for (const int cell : tile_.object_cells) {
-    if (!rendered_.hit(cell)) continue;
-    sum += tile_.points[at(cell)] - camera_support_ - tile_.rays[at(cell)] * static_cast<double>(rendered_.depth[at(cell)]);
+  for (const int cell : seen.tile->object_cells) {
+    if (!seen.depth.hit(cell)) continue;
+    sum += seen.tile->points[at(cell)] - seen.point_support(cell);
     ++count;
   }
   return count > 0 ? Vector3d(sum / count) : Vector3d::Zero();
 }
 
-VisibleFit::SurfacePoint VisibleFit::surface_point(int cell) const {
-  const Triangle& t = primitive_.topology->triangles[at(rendered_.triangle[at(cell)])];
+VisibleFit::SurfacePoint VisibleFit::surface_point(const Rendering& seen, int cell) const {
+  const SearchTile& tile = *seen.tile;
+  const Triangle& t = primitive_.topology->triangles[at(seen.depth.triangle[at(cell)])];
   SurfacePoint result{};
   for (std::size_t k = 0; k < 3; ++k) result.vertices[k] = t[k];
-  const Vector3d ray = tile_.camera.ray(tile_.rect.u0 + cell % tile_.width * tile_.step, tile_.rect.v0 + cell / tile_.width * tile_.step);
-  result.weights = barycentric_on_ray(camera_[at(t[0])], camera_[at(t[1])], camera_[at(t[2])], ray);
-  result.point = camera_support_ + tile_.rays[at(cell)] * static_cast<double>(rendered_.depth[at(cell)]);
+  const Vector3d ray = tile.camera.ray(tile.rect.u0 + cell % tile.width * tile.step, tile.rect.v0 + cell / tile.width * tile.step);
+  result.weights = barycentric_on_ray(seen.camera[at(t[0])], seen.camera[at(t[1])], seen.camera[at(t[2])], ray);
+  result.point = seen.point_support(cell);
   for (int k = 0; k < 3; ++k) result.canonical += result.weights[k] * canonical_[at(result.vertices[k])];
   return result;
 }
@@ -148,48 +173,51 @@ void VisibleFit::add(const SurfacePoint& p, const Vector3d& direction, double re
   }
 }
 
-void VisibleFit::add_surface_residuals(const FitScale& scale) {
-  const double share = std::min(1.0, kEffectivePixels / static_cast<double>(std::max<std::size_t>(1, tile_.object_cells.size())));
-  for (const int cell : tile_.object_cells) {
-    if (!rendered_.hit(cell)) continue;
-    const double residual = plane_distance(tile_, rendered_, cell);
-    const double sigma = root_of_squares(static_cast<double>(tile_.sigma_m[at(cell)]), scale.model_sigma_m);
+void VisibleFit::add_surface_residuals(const Rendering& seen, const FitScale& scale) {
+  const SearchTile& tile = *seen.tile;
+  const double share = std::min(1.0, kEffectivePixels / static_cast<double>(std::max<std::size_t>(1, tile.object_cells.size())));
+  for (const int cell : tile.object_cells) {
+    if (!seen.depth.hit(cell)) continue;
+    const double residual = plane_distance(tile, seen.depth, cell);
+    const double sigma = root_of_squares(static_cast<double>(tile.sigma_m[at(cell)]), scale.model_sigma_m);
     const double weight = share * geman_mcclure(residual, scale.robust_m + 2 * sigma) / (sigma * sigma);
-    Vector3d normal = tile_.normals[at(cell)];
-    if (normal.squaredNorm() < 0.5) normal = -tile_.rays[at(cell)].normalized();
+    Vector3d normal = tile.normals[at(cell)];
+    if (normal.squaredNorm() < 0.5) normal = -tile.rays[at(cell)].normalized();
     // The rendered point is in front of the data where the residual is negative: along the normal towards the camera.
-    add(surface_point(cell), normal, -residual, weight);
+    add(surface_point(seen, cell), normal, -residual, weight);
   }
 }
 
-void VisibleFit::add_silhouette_residuals(const FitScale& scale) {
-  if (tile_.object_cells.empty()) return;  // nothing to be drawn out or in to
-  const Eigen::Matrix3d R_support_camera = tile_.T_camera_support.linear().transpose();
-  const double share = std::min(1.0, kEffectivePixels / static_cast<double>(std::max<std::size_t>(1, tile_.object_cells.size())));
+void VisibleFit::add_silhouette_residuals(const Rendering& seen, const FitScale& scale) {
+  const SearchTile& tile = *seen.tile;
+  const DepthTile& rendered = seen.depth;
+  if (tile.object_cells.empty()) return;  // nothing to be drawn out or in to
+  const Eigen::Matrix3d R_support_camera = tile.T_camera_support.linear().transpose();
+  const double share = std::min(1.0, kEffectivePixels / static_cast<double>(std::max<std::size_t>(1, tile.object_cells.size())));
 
   // The model's point seen at `cell` should move sideways until it is seen at `target`.
   const auto draw = [&](int cell, int target) {
-    const double du = target % tile_.width - cell % tile_.width, dv = target / tile_.width - cell / tile_.width;
+    const double du = target % tile.width - cell % tile.width, dv = target / tile.width - cell / tile.width;
     const double length = root_of_squares(du, dv);
-    const double pixel = tile_.step * static_cast<double>(rendered_.depth[at(cell)]) / tile_.camera.fx;
+    const double pixel = tile.step * static_cast<double>(rendered.depth[at(cell)]) / tile.camera.fx;
     const double distance = (length - 0.5) * pixel;
     const double sigma = root_of_squares(0.7 * pixel, scale.model_sigma_m);
     const double weight = share * geman_mcclure(distance, 2 * (scale.robust_m + 2 * sigma)) / (sigma * sigma);
-    add(surface_point(cell), R_support_camera * Vector3d(du / length, dv / length, 0), -distance, weight);
+    add(surface_point(seen, cell), R_support_camera * Vector3d(du / length, dv / length, 0), -distance, weight);
   };
-  for (const int cell : tile_.object_cells) {
-    if (!tile_.rim[at(cell)] || rendered_.hit(cell)) continue;
-    const int from = nearest_cell(tile_.width, tile_.height, cell, kReach, [&](int c) { return rendered_.hit(c); });
+  for (const int cell : tile.object_cells) {
+    if (!tile.rim[at(cell)] || rendered.hit(cell)) continue;
+    const int from = nearest_cell(tile.width, tile.height, cell, kReach, [&](int c) { return rendered.hit(c); });
     if (from >= 0) draw(from, cell);
   }
-  for (int j = 0; j < tile_.height; ++j) {
-    for (int i = 0; i < tile_.width; ++i) {
-      const int cell = j * tile_.width + i;
-      if (!rendered_.hit(cell) || tile_.evidence[at(cell)] == Evidence::kObject || tile_.depth[at(cell)] <= 0 || !in_free_space(tile_, rendered_, cell)) continue;
-      const bool on_edge = i == 0 || j == 0 || i + 1 == tile_.width || j + 1 == tile_.height || !rendered_.hit(cell - 1) || !rendered_.hit(cell + 1) ||
-                           !rendered_.hit(cell - tile_.width) || !rendered_.hit(cell + tile_.width);
+  for (int j = 0; j < tile.height; ++j) {
+    for (int i = 0; i < tile.width; ++i) {
+      const int cell = j * tile.width + i;
+      if (!rendered.hit(cell) || tile.evidence[at(cell)] == Evidence::kObject || tile.depth[at(cell)] <= 0 || !in_free_space(tile, rendered, cell)) continue;
+      const bool on_edge = i == 0 || j == 0 || i + 1 == tile.width || j + 1 == tile.height || !rendered.hit(cell - 1) || !rendered.hit(cell + 1) ||
+                           !rendered.hit(cell - tile.width) || !rendered.hit(cell + tile.width);
       if (!on_edge) continue;
-      const int to = nearest_cell(tile_.width, tile_.height, cell, std::max(tile_.width, tile_.height), [&](int c) { return tile_.evidence[at(c)] == Evidence::kObject; });
+      const int to = nearest_cell(tile.width, tile.height, cell, std::max(tile.width, tile.height), [&](int c) { return tile.evidence[at(c)] == Evidence::kObject; });
       if (to >= 0) draw(cell, to);
     }
   }
@@ -219,8 +247,10 @@ void VisibleFit::add_contact_and_priors(const FitScale& scale) {
 Eigen::VectorXd VisibleFit::step(const FitScale& scale, double damping) {
   rows_.reset(state_.unknowns());
   weights_.clear();
-  add_surface_residuals(scale);
-  add_silhouette_residuals(scale);
+  for (const Rendering& seen : renderings_) {
+    add_surface_residuals(seen, scale);
+    add_silhouette_residuals(seen, scale);
+  }
   add_contact_and_priors(scale);
   Eigen::MatrixXd damped = information_;
   damped.diagonal() *= 1.0 + damping;

@@ -13,10 +13,15 @@
 
 namespace gfp {
 
-/// One known object in one frame: what the methods see and what is true.
-struct EvaluationCase {
+/// A frame and where it shows the object.
+struct MaskedFrame {
   Frame frame;
   Image<std::uint8_t> object_mask;  ///< Non-zero where the frame shows the object.
+};
+
+/// One known object in one frame: what the methods see and what is true.
+struct EvaluationCase : MaskedFrame {
+  std::vector<MaskedFrame> elsewhere;  ///< The object from other standpoints: for methods that use the object's field.
   TruthView truth;
   double hidden_share = 0;          ///< Share of the object's pixels that something nearer hides.
   std::vector<Eigen::Vector3f> others_camera;     ///< Surface points of what else stands there, metres; for judging grasps.
@@ -35,6 +40,7 @@ struct CaseSpec {
 struct CaseOptions {
   int views = 4;                                    ///< Yaws per object and elevation.
   std::vector<double> elevations_deg{20, 35, 60};
+  int cameras = 1;                                  ///< Standpoints whose views are fitted together, evenly around the object; of posed frames so many of them.
   double occlusion = 0;                             ///< Share of the object's pixels that a nearer box hides.
   double noise_scale = 1;                           ///< Of the virtual Kinect's errors; 0: a perfect camera.
   double distance_m = 0.8;                          ///< From the camera to the object's centre.

@@ -40,6 +40,14 @@ struct WarmStart {
   std::shared_ptr<const FittedModel> model;  ///< That fit itself; its pose is in the camera frame of its own frame.
 };
 
+struct ObjectView;
+
+/// The same object as it was seen from elsewhere: by another sensor, or by this one before it moved.
+struct Sighting {
+  Transform T_sighting_camera = Transform::Identity();  ///< Maps the camera frame of the view that holds this into the sighting's.
+  std::shared_ptr<const ObjectView> view;               ///< Its own `field` is empty.
+};
+
 /// All that one object's fit may look at: a copy of its part of the frame, cut out with a margin.
 /// The tile has the frame's resolution: tile pixel (i, j) is image pixel (tile.u0 + i, tile.v0 + j).
 struct ObjectView {
@@ -57,6 +65,7 @@ struct ObjectView {
   bool touches_border = false, occluded = false, top_cut = false;
   double height_m = 0;                  ///< 99.5 % quantile above the support.
   std::vector<std::vector<Eigen::Vector2d>> neighbour_footprints;  ///< Convex outlines on the support plane of the other clusters, support frame.
+  std::vector<Sighting> field;          ///< What else was seen of it, as far as it still holds: `robust` fits look at all of it.
   std::optional<WarmStart> warm_start;
   bool unchanged = false;               ///< Within noise it looks as it did when it was fitted: that fit still holds.
 };

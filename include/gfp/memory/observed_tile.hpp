@@ -33,4 +33,7 @@ struct ObservedTile {
 /// `target_cells`: about how many object cells the grid should have; the step follows.
 ObservedTile observe(const ObjectView& view, int target_cells);
 
+/// The view and every sighting of its field, each on a grid of its own, all in the support frame of the view.
+std::vector<ObservedTile> observe_field(const ObjectView& view, int target_cells);
+
 }  // namespace gfp
