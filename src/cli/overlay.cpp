@@ -59,11 +59,12 @@ void draw_background(Canvas& canvas, const Frame& frame, const Image<float>& dep
 void draw_segments(Canvas& canvas, const SceneMemory& memory, const Scene& scene, double scale) {
   const int width = scene.camera.width, height = scene.camera.height;
   for (const Track& track : memory.tracks) {
-    if (track.missed_frames > 0 || track.sensor != scene.sensor) continue;
+    const SensorTrack* seen = track.seen_by(scene.sensor);
+    if (!seen || seen->missed_frames > 0) continue;
     Image<std::uint8_t> mask(width, height, 0);
-    for (const std::int32_t pixel : track.pixels) mask.pixels[static_cast<std::size_t>(pixel)] = 1;
+    for (const std::int32_t pixel : seen->pixels) mask.pixels[static_cast<std::size_t>(pixel)] = 1;
     const auto inside = [&](int u, int v) { return mask.contains(u, v) && mask.at(u, v); };
-    for (const std::int32_t pixel : track.pixels) {
+    for (const std::int32_t pixel : seen->pixels) {
       const int u = pixel % width, v = pixel / width;
       if (inside(u - 1, v) && inside(u + 1, v) && inside(u, v - 1) && inside(u, v + 1)) continue;
       canvas.disc({(u + 0.5) * scale - 0.5, (v + 0.5) * scale - 0.5}, 0.35 * scale, {255, 255, 255}, 0.55);

@@ -16,8 +16,8 @@ namespace {
 
 Segments segment(const OrganizedCloud& cloud, const Frame& frame, const SceneMemory& memory, const PipelineOptions& options) {
   if (options.profile == "paper") return segment_cloud_paper(cloud, options.segmentation, frame.up_camera, frame.mask);
-  const SupportPlane* last = memory.last_support ? &*memory.last_support : nullptr;
-  return segment_cloud(cloud, options.segmentation, frame.up_camera, last, frame.mask);
+  const auto& last = memory.of(frame.sensor).last_support;
+  return segment_cloud(cloud, options.segmentation, frame.up_camera, last ? &*last : nullptr, frame.mask);
 }
 
 std::vector<PixelRect> object_boxes(const Segments& segments) {
@@ -40,7 +40,7 @@ const Track* find_track(const SceneMemory& memory, std::uint64_t id) {
 /// One object on its way through the stages; `candidates` stay empty where nothing could be fitted.
 struct Work {
   const ObjectView* view = nullptr;
-  const SceneObject* before = nullptr;  ///< As last published, where it is known.
+  const SceneObject* before = nullptr;  ///< As last published for this sensor; by another one where this one has not seen it yet.
   const ObjectView* view_before = nullptr;
   std::vector<Candidate> candidates;
   StageTimings timings;
@@ -49,13 +49,16 @@ struct Work {
   bool unchanged() const { return view->unchanged && before; }
 };
 
-std::vector<Work> plan_work(const std::vector<ObjectView>& views, const SceneMemory& memory) {
+std::vector<Work> plan_work(const std::vector<ObjectView>& views, const SceneMemory& memory, const std::string& sensor) {
   std::vector<Work> work(views.size());
   for (std::size_t i = 0; i < views.size(); ++i) {
-    const Track* track = find_track(memory, views[i].id);
     work[i].view = &views[i];
-    work[i].before = track ? track->object.get() : nullptr;
-    work[i].view_before = track ? track->fitted_view.get() : nullptr;
+    const Track* track = find_track(memory, views[i].id);
+    if (!track) continue;
+    const SensorTrack* own = track->seen_by(sensor);
+    const SensorTrack& seen = own && own->object ? *own : track->last();
+    work[i].before = seen.object.get();
+    work[i].view_before = seen.fitted_view.get();
   }
   return work;
 }
@@ -102,9 +105,9 @@ void finish(Work& work, ObjectEstimate estimate, const PipelineOptions& options)
 }
 
 /// Every segment as far as it gets: fitted in parallel, chosen jointly, described in parallel.
-std::vector<Work> estimate_objects(const std::vector<ObjectView>& views, const SceneMemory& memory, const PrimitiveLibrary& library,
+std::vector<Work> estimate_objects(const std::vector<ObjectView>& views, const SceneMemory& memory, const std::string& sensor, const PrimitiveLibrary& library,
                                    const PipelineOptions& options, std::vector<RejectedSegment>& rejected, StageTimings& timings) {
-  std::vector<Work> work = plan_work(views, memory);
+  std::vector<Work> work = plan_work(views, memory, sensor);
   timings.measure("fit", [&] { oneapi::tbb::parallel_for(std::size_t{0}, work.size(), [&](std::size_t i) { fit(work[i], library, options); }); });
   const std::vector<RejectedSegment> unfitted = reject_unfitted(work);
   rejected.insert(rejected.end(), unfitted.begin(), unfitted.end());
@@ -138,7 +141,7 @@ void add_objects(Scene& scene, std::vector<Work> work, const Segments& segments,
                  const PipelineOptions& options) {
   std::vector<const SceneObject*> left;
   for (const std::uint64_t id : scene.lost)
-    if (const Track* track = find_track(memory, id); track && track->object) left.push_back(track->object.get());
+    if (const Track* track = find_track(memory, id)) left.push_back(track->seen_by(scene.sensor)->object.get());
   std::vector<GraspSubject> subjects;
   for (Work& w : work) subjects.push_back({&w.object, w.view, w.before, w.view_before});
   plan_scene_grasps(subjects, segments, cloud, left, options);
@@ -147,7 +150,9 @@ void add_objects(Scene& scene, std::vector<Work> work, const Segments& segments,
 
 /// A frame that shows the same as the last one looked at is the same scene; now and then one is looked at all the same.
 bool stands_still(const Frame& frame, const SceneMemory& memory, const PipelineOptions& options) {
-  return memory.look && memory.frames_since_look + 1 < options.memory.look_again_every && shows_the_same(frame, memory.look->frame);
+  const SensorMemory& sensor = memory.of(frame.sensor);
+  return sensor.look && sensor.look->field_changes == memory.field_changes && sensor.frames_since_look + 1 < options.memory.look_again_every &&
+         shows_the_same(frame, sensor.look->frame);
 }
 
 PipelineResult look(const Frame& frame, const SceneMemory& memory, const PrimitiveLibrary& library, const PipelineOptions& options, StageTimings& timings) {
@@ -158,7 +163,7 @@ PipelineResult look(const Frame& frame, const SceneMemory& memory, const Primiti
 
   Scene scene = stamped(empty_scene(segments), frame, options);
   scene.lost = lost_ids(memory, views, frame.sensor);
-  auto work = estimate_objects(views, memory, library, options, scene.rejected, timings);
+  auto work = estimate_objects(views, memory, frame.sensor, library, options, scene.rejected, timings);
   timings.measure("grasps", [&] { add_objects(scene, std::move(work), segments, cloud, memory, options); });
   auto next = timings.measure("memory", [&] { return remember(scene, frame, views, memory, options.memory); });
   return {std::move(scene), std::move(next)};

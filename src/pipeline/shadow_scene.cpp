@@ -35,17 +35,18 @@ Scene shadow_scene(const Scene& scene, const SceneMemory& memory, const Primitiv
   result.ms.clear();
   for (const SceneObject& object : scene.objects) {
     const auto track = std::find_if(memory.tracks.begin(), memory.tracks.end(), [&](const Track& t) { return t.id == object.id; });
-    if (track == memory.tracks.end() || !track->fitted_view) continue;
+    const SensorTrack* seen = track != memory.tracks.end() ? track->seen_by(scene.sensor) : nullptr;
+    if (!seen || !seen->fitted_view) continue;
     const auto known = last.objects.find(object.id);
     std::optional<SceneObject> shadow;
-    if (known != last.objects.end() && known->second.view == track->fitted_view) {
+    if (known != last.objects.end() && known->second.view == seen->fitted_view) {
       shadow = std::move(known->second.object);
       shadow->status = object.status;
     } else {
-      shadow = fit_again(object, *track->fitted_view, library, options);
+      shadow = fit_again(object, *seen->fitted_view, library, options);
     }
     if (!shadow) continue;
-    kept.objects[object.id] = {track->fitted_view, *shadow};
+    kept.objects[object.id] = {seen->fitted_view, *shadow};
     result.objects.push_back(std::move(*shadow));
   }
   return result;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <memory>
+#include <utility>
 
 namespace gfp {
 namespace {
@@ -23,26 +24,21 @@ bool seen(const std::vector<ObjectView>& views, std::uint64_t id) {
   return std::any_of(views.begin(), views.end(), [&](const ObjectView& view) { return view.id == id; });
 }
 
-/// Pixels and place of what was seen.
-void locate(Track& track, const ObjectView& view, const Scene& scene) {
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  track.bbox = {view.tile.u1, view.tile.v1, view.tile.u0, view.tile.v0};
-  track.pixels.clear();
-  track.pixels.reserve(static_cast<std::size_t>(view.object_pixels));
+/// Pixels of what was seen.
+SensorTrack seen_now(const ObjectView& view, const Scene& scene) {
+  SensorTrack seen;
+  seen.sensor = scene.sensor;
+  seen.T_world_sensor = scene.T_world_sensor;
+  seen.bbox = {view.tile.u1, view.tile.v1, view.tile.u0, view.tile.v0};
+  seen.pixels.reserve(static_cast<std::size_t>(view.object_pixels));
   for (int v = view.tile.v0; v < view.tile.v1; ++v) {
     for (int u = view.tile.u0; u < view.tile.u1; ++u) {
-      const int i = u - view.tile.u0, j = v - view.tile.v0;
-      if (view.evidence.at(i, j) != Evidence::kObject) continue;
-      track.pixels.push_back(v * view.camera.width + u);
-      track.bbox = {std::min(track.bbox.u0, u), std::min(track.bbox.v0, v), std::max(track.bbox.u1, u + 1), std::max(track.bbox.v1, v + 1)};
-      sum += view.camera.ray(u, v) * static_cast<double>(view.depth_m.at(i, j));
+      if (view.evidence.at(u - view.tile.u0, v - view.tile.v0) != Evidence::kObject) continue;
+      seen.pixels.push_back(v * view.camera.width + u);
+      seen.bbox = {std::min(seen.bbox.u0, u), std::min(seen.bbox.v0, v), std::max(seen.bbox.u1, u + 1), std::max(seen.bbox.v1, v + 1)};
     }
   }
-  track.centre_world = scene.T_world_sensor * Eigen::Vector3d(sum / std::max(1, view.object_pixels));
-  track.height_m = view.height_m;
-  track.sensor = scene.sensor;
-  track.T_world_sensor = scene.T_world_sensor;
-  track.missed_frames = 0;
+  return seen;
 }
 
 WarmStart warm_start_of(const SceneObject& object, const WarmStart& before) {
@@ -61,26 +57,35 @@ WarmStart warm_start_of(const SceneObject& object, const WarmStart& before) {
   return warm;
 }
 
-Track next_track(const ObjectView& view, const Scene& scene, const Track* before) {
+bool same_views(const ObjectField& a, const ObjectField& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const FieldView& x, const FieldView& y) { return x.view == y.view; });
+}
+
+Track next_track(const ObjectView& view, const Scene& scene, const Track* before, const AssociateOptions& options) {
   Track track = before ? *before : Track{};
   track.id = view.id;
-  locate(track, view, scene);
+  track.centre_world = scene.T_world_sensor * seen_centre(view);
+  track.height_m = view.height_m;
+  track.field = remember_view(std::move(track.field), scene.sensor, scene.T_world_sensor, view, options);
+  SensorTrack now = seen_now(view, scene);
+  const SensorTrack* last = before ? before->seen_by(scene.sensor) : nullptr;
   const SceneObject* object = find_object(scene, view.id);
   if (!object) {  // seen, but nothing could be fitted to it
     track.fit = {};
-    track.fitted_view.reset();
-    track.object.reset();
-    return track;
+  } else {
+    track.fit = warm_start_of(*object, track.fit);
+    const bool still = object->status == ObjectStatus::kUnchanged && last && last->fitted_view;
+    now.fitted_view = still ? last->fitted_view : std::make_shared<const ObjectView>(view);
+    now.object = std::make_shared<const SceneObject>(*object);
+    track.fit.model = std::shared_ptr<const FittedModel>(now.object, &now.object->model);
   }
-  track.fit = warm_start_of(*object, track.fit);
-  if (object->status != ObjectStatus::kUnchanged || !track.fitted_view) track.fitted_view = std::make_shared<const ObjectView>(view);
-  track.object = std::make_shared<const SceneObject>(*object);
-  track.fit.model = std::shared_ptr<const FittedModel>(track.object, &track.object->model);
+  std::erase_if(track.sensors, [&](const SensorTrack& seen) { return seen.sensor == scene.sensor; });
+  track.sensors.insert(track.sensors.begin(), std::move(now));
   return track;
 }
 
 /// Nothing where the frame is none: a depth image that does not fit its camera has no second look.
-std::shared_ptr<const Look> look_at(const Frame& frame, const Scene& scene) {
+std::shared_ptr<const Look> look_at(const Frame& frame, const Scene& scene, std::uint64_t field_changes) {
   if (frame.depth.pixels.width != frame.camera.width || frame.depth.pixels.height != frame.camera.height || !validate(frame.camera)) return nullptr;
   auto look = std::make_shared<Look>();
   look->frame.sensor = frame.sensor;
@@ -92,27 +97,40 @@ std::shared_ptr<const Look> look_at(const Frame& frame, const Scene& scene) {
   look->frame.mask = frame.mask;
   look->support = scene.support;
   look->rejected = scene.rejected;
+  look->field_changes = field_changes;
   return look;
 }
 
-bool stands_there(const Track& track, const std::string& sensor) { return track.sensor == sensor && track.missed_frames == 0 && track.object; }
+/// What `sensor` saw of it in its last frame; nothing where it did not.
+const SceneObject* standing(const Track& track, const std::string& sensor) {
+  const SensorTrack* seen = track.seen_by(sensor);
+  return seen && seen->missed_frames == 0 ? seen->object.get() : nullptr;
+}
+
+/// One more frame of `sensor` without the object; nothing is left of what it has not seen for too long.
+void miss(Track& track, const std::string& sensor, const AssociateOptions& options) {
+  for (SensorTrack& seen : track.sensors) seen.missed_frames += seen.sensor == sensor ? 1 : 0;  // another sensor's silence says nothing
+  std::erase_if(track.sensors, [&](const SensorTrack& seen) { return seen.missed_frames > options.max_missed_frames; });
+}
 
 }  // namespace
 
 std::vector<std::uint64_t> lost_ids(const SceneMemory& memory, const std::vector<ObjectView>& views, const std::string& sensor) {
   std::vector<std::uint64_t> lost;
   for (const Track& track : memory.tracks)
-    if (stands_there(track, sensor) && !seen(views, track.id)) lost.push_back(track.id);
+    if (standing(track, sensor) && !seen(views, track.id)) lost.push_back(track.id);
   return lost;
 }
 
 Scene standing_scene(const SceneMemory& memory, const std::string& sensor) {
+  const Look& look = *memory.of(sensor).look;
   Scene scene;
-  scene.support = memory.look->support;
-  scene.rejected = memory.look->rejected;
+  scene.support = look.support;
+  scene.rejected = look.rejected;
   for (const Track& track : memory.tracks) {
-    if (!stands_there(track, sensor)) continue;
-    scene.objects.push_back(*track.object);
+    const SceneObject* object = standing(track, sensor);
+    if (!object) continue;
+    scene.objects.push_back(*object);
     scene.objects.back().status = ObjectStatus::kUnchanged;
     scene.objects.back().ms.clear();
   }
@@ -121,12 +139,15 @@ Scene standing_scene(const SceneMemory& memory, const std::string& sensor) {
 
 SceneMemory remember_standing(SceneMemory memory, const std::string& sensor, const AssociateOptions& options) {
   ++memory.frames;
-  ++memory.frames_since_look;
+  ++memory.sensors[sensor].frames_since_look;
   for (Track& track : memory.tracks) {
-    if (stands_there(track, sensor)) ++track.fit.unchanged_frames;
-    if (track.sensor == sensor && track.missed_frames > 0) ++track.missed_frames;
+    if (standing(track, sensor)) {
+      ++track.fit.unchanged_frames;
+    } else if (const SensorTrack* seen = track.seen_by(sensor); seen && seen->missed_frames > 0) {
+      miss(track, sensor, options);
+    }
   }
-  std::erase_if(memory.tracks, [&](const Track& track) { return track.missed_frames > options.max_missed_frames; });
+  std::erase_if(memory.tracks, [](const Track& track) { return track.sensors.empty(); });
   return memory;
 }
 
@@ -134,20 +155,22 @@ SceneMemory remember(const Scene& scene, const Frame& frame, const std::vector<O
   SceneMemory next;
   next.next_id = memory.next_id;
   next.frames = memory.frames + 1;
-  next.last_support = scene.support ? scene.support : memory.last_support;
-  next.look = look_at(frame, scene);
+  next.field_changes = memory.field_changes;
   for (const ObjectView& view : views) {
-    next.tracks.push_back(next_track(view, scene, find_track(memory, view.id)));
+    const Track* before = find_track(memory, view.id);
+    next.tracks.push_back(next_track(view, scene, before, options));
+    next.field_changes += same_views(next.tracks.back().field, before ? before->field : ObjectField{}) ? 0 : 1;
     next.next_id = std::max(next.next_id, view.id + 1);
   }
   for (const Track& track : memory.tracks) {
     if (seen(views, track.id)) continue;
-    const int missed = track.missed_frames + (track.sensor == scene.sensor ? 1 : 0);  // another sensor's silence says nothing
-    if (missed > options.max_missed_frames) continue;
-    next.tracks.push_back(track);
-    next.tracks.back().missed_frames = missed;
+    Track missed = track;
+    miss(missed, scene.sensor, options);
+    if (!missed.sensors.empty()) next.tracks.push_back(std::move(missed));
   }
   std::sort(next.tracks.begin(), next.tracks.end(), [](const Track& a, const Track& b) { return a.id < b.id; });
+  next.sensors = memory.sensors;
+  next.sensors[scene.sensor] = {scene.support ? scene.support : memory.of(scene.sensor).last_support, look_at(frame, scene, next.field_changes), 0};
   return next;
 }
 

@@ -19,7 +19,7 @@ using Names = std::set<std::string>;
 
 /// Headers that are plain data or options: the products of their step, which later steps may read. Every other public
 /// header is an algorithm, which only `whole` folders may call. core, frame and primitive are products throughout.
-const Names kProducts{"cloud/organized_cloud", "segmentation/segments", "memory/object_view", "memory/object_points", "memory/scene_memory", "memory/associate_options", "memory/observed_tile", "memory/image_score",
+const Names kProducts{"cloud/organized_cloud", "segmentation/segments", "memory/object_view", "memory/object_points", "memory/scene_memory", "memory/object_field", "memory/associate_options", "memory/observed_tile", "memory/image_score",
                       "recognition/hypothesis", "registration/placement", "modelling/fitted_model", "selection/object_estimate", "grasp/grasp", "scene/scene"};
 const Names kProductFolders{"core", "frame", "primitive"};
 

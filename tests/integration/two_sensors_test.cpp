@@ -1,9 +1,14 @@
 // Two sensors with extrinsics over one table: one memory in the world, so that an object is the same one in both.
 #include <gtest/gtest.h>
 
+#include <cstdio>
+#include <memory>
+#include <numbers>
+#include <string>
 #include <vector>
 
 #include "app/builtin_library.hpp"
+#include "gfp/evaluation/metrics.hpp"
 #include "gfp/pipeline/process_frame.hpp"
 #include "synthetic/synthetic_source.hpp"
 
@@ -71,6 +76,77 @@ TEST(TwoSensors, OneGoesOnAlone) {
     if (ids.empty()) ids = now;
     EXPECT_EQ(now, ids);
   }
+}
+
+/// Mean filled IoU of what a scene holds with the true objects, nearest with nearest; 0 for one that is missing.
+double mean_iou(const Scene& scene, const SyntheticSource& source, const std::vector<TruthShape>& shapes) {
+  const FrameTruth truth = source.truth(0);
+  double sum = 0;
+  for (std::size_t i = 0; i < shapes.size(); ++i) {
+    const Transform T_camera_object = scene.T_world_sensor.inverse() * truth.T_world_camera * truth.T_camera_object[i];
+    double best = 0;
+    for (const SceneObject& object : scene.objects) {
+      const TruthView view{std::make_shared<const TruthShape>(shapes[i]), T_camera_object, std::vector<std::uint8_t>(shapes[i].samples.points.size(), 1)};
+      best = std::max(best, measure_fit(view, object.model, {}).iou_filled);
+    }
+    sum += best;
+  }
+  return sum / static_cast<double>(shapes.size());
+}
+
+std::vector<TruthShape> true_shapes(const SyntheticSource& source) {
+  std::vector<TruthShape> shapes;
+  for (const PlacedMesh& object : source.scene().objects) shapes.push_back(*make_truth_shape(object.name, object.class_name, object.mesh));
+  return shapes;
+}
+
+// What one sees and the other does not goes into one shape, which both publish: better than either alone, and once both have looked twice it
+// stands as it is.
+TEST(TwoSensors, FitOneShapeToWhatBothSee) {
+  SyntheticSource front(standing_at("front", -1.6)), back(standing_at("back", 1.54));
+  const std::vector<TruthShape> shapes = true_shapes(front);
+  const std::vector<Scene> together = scenes_in_turn({&front, &back}, 4);
+  double alone = 0;
+  for (const char* name : {"front", "back"}) {
+    SyntheticSource source(standing_at(name, name == std::string("front") ? -1.6 : 1.54));
+    alone += 0.5 * mean_iou(scenes_in_turn({&source}, 1).back(), source, shapes);
+  }
+  const Scene &last_front = together[6], &last_back = together[7];
+  const double fused_front = mean_iou(last_front, front, shapes), fused_back = mean_iou(last_back, back, shapes);
+  std::printf("mean filled IoU: one sensor %.3f, both %.3f and %.3f\n", alone, fused_front, fused_back);
+  EXPECT_GT(fused_front, alone + 0.02);
+  EXPECT_GT(fused_back, alone + 0.02);
+  for (const Scene* scene : {&last_front, &last_back})
+    for (const SceneObject& object : scene->objects) EXPECT_EQ(object.status, ObjectStatus::kUnchanged) << scene->sensor << " object " << object.id;
+}
+
+/// Mean IoU over the second half of a way around the table, 9 degrees a frame.
+double mean_iou_around(int field_views) {
+  SyntheticOptions options = standing_at("arm", -1.6);
+  options.seed = 11;
+  options.table.objects = 5;
+  options.motion = "orbit";
+  options.orbit_swing_rad = std::numbers::pi;
+  options.orbit_period_s = 8;
+  options.rate_hz = 5;
+  SyntheticSource source(options);
+  const std::vector<TruthShape> shapes = true_shapes(source);
+  PipelineOptions pipeline;
+  pipeline.memory.field_views = field_views;
+  SceneMemory memory;
+  double sum = 0;
+  for (int frame = 0; frame < 40; ++frame) {
+    PipelineResult result = process_frame(*source.grab(10s), memory, builtin_library(), pipeline);
+    memory = std::move(result.memory);
+    if (frame >= 20) sum += mean_iou(result.scene, source, shapes) / 20;
+  }
+  return sum;
+}
+
+TEST(MovingSensor, KnowsWhatItSawFromElsewhere) {
+  const double without = mean_iou_around(0), with = mean_iou_around(2);
+  std::printf("mean filled IoU on the second half of the way: %.3f, with the field %.3f\n", without, with);
+  EXPECT_GT(with, without + 0.02);
 }
 
 }  // namespace

@@ -25,12 +25,13 @@ SceneMemory memory_of(const BlockScene& scene, const std::vector<ObjectView>& vi
     const Segment& segment = scene.segments.segments[static_cast<std::size_t>(view.segment)];
     Track track;
     track.id = view.id;
-    track.sensor = scene.frame.sensor;
-    track.T_world_sensor = scene.frame.T_world_sensor;
+    track.sensors.resize(1);
+    track.sensors[0].sensor = scene.frame.sensor;
+    track.sensors[0].T_world_sensor = scene.frame.T_world_sensor;
     for (const std::int32_t pixel : segment.pixels) track.centre_world += scene.cloud.point(static_cast<std::size_t>(pixel)).cast<double>();
     track.centre_world = scene.frame.T_world_sensor * Eigen::Vector3d(track.centre_world / static_cast<double>(segment.pixels.size()));
     track.height_m = view.height_m;
-    track.pixels = segment.pixels;
+    track.sensors[0].pixels = segment.pixels;
     memory.tracks.push_back(track);
     memory.next_id = std::max(memory.next_id, view.id + 1);
   }
@@ -135,7 +136,7 @@ TEST(Associate, FollowsARowThatMovesTogether) {
 TEST(Associate, AnObjectThatWasHiddenGetsItsIdBack) {
   const auto scene = block_scene({{{20, 30, 40, 50}}, {{100, 30, 120, 50}}});
   SceneMemory memory = memory_of(scene, views_of(scene));
-  memory.tracks[1].missed_frames = 20;
+  memory.tracks[1].sensors[0].missed_frames = 20;
   EXPECT_EQ(views_of(scene, memory)[1].id, 2U);
 }
 

@@ -99,6 +99,24 @@ TEST(RegisterPrimitive, FindsTheYawOfABox) {
   }
 }
 
+// Seen on its face, a box may be as deep as its class allows. Who stands behind it sees how deep it is, whoever's frame it is that is fitted.
+TEST(RegisterPrimitive, WhatOneViewHidesAnotherTells) {
+  const TriangleMesh box = transformed(test::box({0.15, 0.05, 0.2}), Transform(Eigen::Translation3d(0.02, 0.01, 0)));
+  const auto seen_from = [&](double azimuth_deg) { return view_from(box, 4, azimuth_deg, 1); };
+  const Transform T_world_front = seen_from(-90).T_camera_support.inverse();
+  const auto depth_of = [&](const ObjectView& view) {
+    return bounds(world_vertices(register_primitive(view, all_poses(test::box_primitive())).front(), view)).size().y();
+  };
+  const double alone = depth_of(seen_from(-90));
+  for (const double other_deg : {90.0, 150.0, 30.0}) {
+    ObjectView view = seen_from(-90);
+    const ObjectView other = seen_from(other_deg);
+    view.field.push_back({other.T_camera_support * T_world_front, std::make_shared<const ObjectView>(other)});
+    EXPECT_NEAR(depth_of(view), 0.05, 0.004) << other_deg;
+    EXPECT_LT(std::abs(depth_of(view) - 0.05), 0.25 * std::abs(alone - 0.05)) << other_deg;
+  }
+}
+
 // The fit must not depend on where the frame is: a rotated and shifted table gives the same object.
 TEST(RegisterPrimitive, MovesWithTheObject) {
   const TriangleMesh can = test::cylinder(0.04, 0.1, 64, 4);

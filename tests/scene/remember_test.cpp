@@ -37,10 +37,10 @@ TEST(Remember, KeepsPlaceFitAndPlane) {
   ASSERT_EQ(memory.tracks.size(), 2U);
   EXPECT_EQ(memory.frames, 1U);
   EXPECT_EQ(memory.next_id, 3U);
-  EXPECT_TRUE(memory.last_support.has_value());
+  EXPECT_TRUE(memory.of(seen.scene.sensor).last_support.has_value());
   const Track& track = memory.tracks[0];
-  EXPECT_EQ(track.pixels, seen.blocks.segments.segments[0].pixels);
-  EXPECT_EQ(track.bbox, (PixelRect{20, 30, 40, 50}));
+  EXPECT_EQ(track.last().pixels, seen.blocks.segments.segments[0].pixels);
+  EXPECT_EQ(track.last().bbox, (PixelRect{20, 30, 40, 50}));
   EXPECT_NEAR(track.centre_world.z(), 0.8, 1e-6);
   EXPECT_EQ(track.fit.method, "gfp_robust");
   EXPECT_DOUBLE_EQ(track.fit.cost, 0.5);
@@ -50,13 +50,13 @@ TEST(Remember, KeepsPlaceFitAndPlane) {
 TEST(Remember, AnUnchangedObjectKeepsTheViewItWasFittedTo) {
   const Seen first = see(kTwo, {}, 1);
   SceneMemory memory = remember(first.scene, {}, first.views, {});
-  const auto fitted = memory.tracks[0].fitted_view;
+  const auto fitted = memory.tracks[0].last().fitted_view;
   for (std::uint64_t seed = 2; seed <= 5; ++seed) {
     const Seen again = see(kTwo, memory, seed);
     ASSERT_TRUE(again.views[0].unchanged) << "seed " << seed;
     memory = remember(again.scene, {}, again.views, memory);
   }
-  EXPECT_EQ(memory.tracks[0].fitted_view, fitted);
+  EXPECT_EQ(memory.tracks[0].last().fitted_view, fitted);
   EXPECT_EQ(memory.tracks[0].fit.unchanged_frames, 4);
   EXPECT_EQ(memory.tracks[0].fit.fits, 1);
 }
@@ -101,7 +101,7 @@ TEST(Remember, AnotherSensorsSilenceSaysNothing) {
   Scene elsewhere;
   elsewhere.sensor = "other";
   EXPECT_TRUE(lost_ids(memory, {}, "other").empty());
-  EXPECT_EQ(remember(elsewhere, {}, {}, memory).tracks[0].missed_frames, 0);
+  EXPECT_EQ(remember(elsewhere, {}, {}, memory).tracks[0].last().missed_frames, 0);
 }
 
 TEST(Remember, WhatHadNoFitIsSeenButNotWarm) {
@@ -109,7 +109,7 @@ TEST(Remember, WhatHadNoFitIsSeenButNotWarm) {
   seen.scene.objects.erase(seen.scene.objects.begin());
   const SceneMemory memory = remember(seen.scene, {}, seen.views, {});
   ASSERT_EQ(memory.tracks.size(), 2U);
-  EXPECT_FALSE(memory.tracks[0].object);
+  EXPECT_FALSE(memory.tracks[0].last().object);
   const Seen again = see(kTwo, memory);
   EXPECT_EQ(again.views[0].id, 1U);
   EXPECT_FALSE(again.views[0].warm_start.has_value());

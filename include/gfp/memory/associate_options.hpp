@@ -12,6 +12,8 @@ struct AssociateOptions {
   double unchanged_iou = 0.80;     ///< Least overlap of two masks of an object that did not move.
   double unchanged_shift_px = 0.5; ///< Most that the mask's centre may move.
   double unchanged_sigmas = 0.5;   ///< Most that the mean depth may move, in standard deviations of one reading.
+  int field_views = 2;             ///< Views of an object from elsewhere that its fit looks at as well; 0: only the frame's own.
+  double field_angle_deg = 15;     ///< Directions to the object that are nearer to each other show the same.
   int look_again_every = 30;       ///< Frames that show the same as the last one looked at are not looked at, except one in so many; 1: every frame is.
 };
 
@@ -25,6 +27,8 @@ void visit_fields(AssociateOptions& o, Visitor&& field) {
   field("unchanged_iou", o.unchanged_iou, 0.0, 1.0);
   field("unchanged_shift_px", o.unchanged_shift_px, 0.0, 100.0);
   field("unchanged_sigmas", o.unchanged_sigmas, 0.0, 100.0);
+  field("field_views", o.field_views, 0, 6);
+  field("field_angle_deg", o.field_angle_deg, 1.0, 90.0);
   field("look_again_every", o.look_again_every, 1, 100'000);
 }
 

@@ -20,7 +20,7 @@ SceneObject describe(ObjectEstimate estimate, const ObjectView& view, ObjectStat
 /// again, under its old id.
 std::vector<std::uint64_t> lost_ids(const SceneMemory& memory, const std::vector<ObjectView>& views, const std::string& sensor);
 
-/// The scene of a frame that shows the same as memory.look (`shows_the_same`), without its stamps: every object that `sensor` saw
+/// The scene of a frame that shows the same as the sensor's last look (`shows_the_same`), without its stamps: every object that `sensor` saw
 /// then, kUnchanged.
 Scene standing_scene(const SceneMemory& memory, const std::string& sensor);
 
