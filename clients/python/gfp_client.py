@@ -17,6 +17,7 @@ Asking instead of listening: Control().snapshot(), .fit(), .best_grasp(), .param
 Metres and radians; camera frame x right, y down, z forward; T_a_b maps b coordinates into a (4x4).
 """
 
+import ctypes
 import dataclasses
 import os
 import pathlib
@@ -97,6 +98,36 @@ def _open_socket(kind, curve):
     return socket
 
 
+class _Zstd:
+    """Decompression by Debian's libzstd.so.1, which every Debian has."""
+
+    MAX_BYTES = 256 << 20
+    _library = None
+
+    @classmethod
+    def decompress(cls, compressed) -> memoryview:
+        if cls._library is None:
+            cls._library = ctypes.CDLL("libzstd.so.1")
+            cls._library.ZSTD_getFrameContentSize.restype = ctypes.c_ulonglong
+            cls._library.ZSTD_decompress.restype = ctypes.c_size_t
+        source = bytes(compressed)
+        size = cls._library.ZSTD_getFrameContentSize(source, ctypes.c_size_t(len(source)))
+        if size > cls.MAX_BYTES:  # both of its error codes are larger
+            raise ValueError("no zstd frame of a size that is read")
+        content = ctypes.create_string_buffer(max(1, size))
+        if cls._library.ZSTD_decompress(content, ctypes.c_size_t(size), source, ctypes.c_size_t(len(source))) != size:
+            raise ValueError("damaged zstd")
+        return memoryview(content).cast("B")[:size]
+
+
+def _blob(envelope, part) -> memoryview:
+    if envelope.encoding == 1:
+        return _Zstd.decompress(part.buffer)
+    if envelope.encoding != 0:
+        raise ValueError(f"encoding {envelope.encoding}, expected raw or zstd")
+    return part.buffer
+
+
 @dataclasses.dataclass
 class Message:
     topic: str
@@ -130,7 +161,7 @@ class Subscriber:
         payload = MESSAGES[envelope.schema].FromString(parts[2].buffer)
         topic = parts[0].bytes.decode()
         self._count(topic, envelope)
-        blob = parts[3].buffer if len(parts) > 3 else memoryview(b"")
+        blob = _blob(envelope, parts[3]) if len(parts) > 3 else memoryview(b"")
         return Message(topic, envelope, payload, blob, time.time() - 1e-9 * envelope.stamp_publish_ns)
 
     def _count(self, topic, envelope):

@@ -10,6 +10,7 @@
 
 #include "client/client_socket.hpp"
 #include "gfp/v1/envelope.pb.h"
+#include "recording/compression.hpp"
 #include "wire/bounded_parse.hpp"
 #include "wire/sensor_messages.hpp"
 #include "wire/topics.hpp"
@@ -38,6 +39,19 @@ std::vector<std::string> endpoints_for(const std::vector<std::string>& topics, c
 
 std::string text_of(const zmq::message_t& part) { return {part.data<char>(), part.size()}; }
 
+/// The blob as it was before it was coded. Errors: kCorruptData, kTooLarge, kUnsupported (a coding that this client does not know).
+Result<void> blob_of(v1::Envelope::Encoding encoding, const zmq::message_t& part, std::string& blob) {
+  const std::string_view bytes(part.data<char>(), part.size());
+  if (encoding == v1::Envelope::ENCODING_RAW) {
+    blob.assign(bytes);
+    return {};
+  }
+  if (encoding != v1::Envelope::ENCODING_ZSTD) return failure(ErrorCode::kUnsupported, fmt::format("encoding {}, expected raw or zstd", static_cast<int>(encoding)));
+  const auto size = zstd_content_size(bytes, kMaxMessageBytes);
+  if (!size) return tl::unexpected(size.error());
+  return decompress("zstd", bytes, *size, blob);
+}
+
 }  // namespace
 
 struct Subscriber::Sockets {
@@ -49,7 +63,7 @@ struct Subscriber::Sockets {
   Nanoseconds last_heard = monotonic_now();
 
   Result<Message> read(const std::vector<zmq::message_t>& parts);
-  void count(const Message& message);
+  void count(const Message& message, std::size_t bytes);
 };
 
 Subscriber::Subscriber(std::unique_ptr<Sockets> sockets) : sockets_(std::move(sockets)) {}
@@ -116,17 +130,19 @@ Result<Message> Subscriber::Sockets::read(const std::vector<zmq::message_t>& par
   message.stamps = {Nanoseconds(envelope.stamp_sensor_ns()), Nanoseconds(envelope.stamp_monotonic_ns()), Nanoseconds(envelope.stamp_capture_ns())};
   message.published = Nanoseconds(envelope.stamp_publish_ns());
   message.age_s = std::chrono::duration<double>(realtime_now() - message.published).count();
-  if (envelope.encoding() != v1::Envelope::ENCODING_RAW) return skip(fmt::format("encoding {}, expected raw", static_cast<int>(envelope.encoding())));
   message.payload = text_of(parts[2]);
-  if (parts.size() == 4) message.blob = text_of(parts[3]);
-  count(message);
+  if (parts.size() == 4)
+    if (auto blob = blob_of(envelope.encoding(), parts[3], message.blob); !blob) return skip(message.topic + ": " + blob.error().what);
+  std::size_t bytes = 0;
+  for (const zmq::message_t& part : parts) bytes += part.size();
+  count(message, bytes);
   return message;
 }
 
-void Subscriber::Sockets::count(const Message& message) {
+void Subscriber::Sockets::count(const Message& message, std::size_t bytes) {
   last_heard = monotonic_now();
   ++counts.received;
-  counts.bytes += message.topic.size() + message.payload.size() + message.blob.size();
+  counts.bytes += bytes;
   if (message.age_s > options.stale_after_s) ++counts.stale;
   constexpr std::size_t kMaxTopics = 100'000;  // ids of objects rise without an end
   if (heard.size() > kMaxTopics) heard.clear();

@@ -30,6 +30,7 @@ class ControlSocket {
  public:
   explicit ControlSocket(BoundSocket socket) : socket_(std::move(socket)) {}
   zmq::socket_t& socket() { return socket_.socket; }
+  BoundSocket& bound() { return socket_; }
 
   /// Takes in what waits, at most kAtOnce requests, so that a flood does not keep the publisher from publishing. Requests for the
   /// schemas, and nonsense, are answered here.

@@ -15,6 +15,7 @@ constexpr std::size_t kKeyBytes = 32;
 /// RFC 27: version, request id, domain, address, identity, mechanism, credentials...
 enum RequestPart : std::size_t { kVersion, kRequestId, kDomainPart, kAddress, kIdentity, kMechanism, kCredentials, kRequestParts };
 
+/// Empty: none came within the socket's timeout.
 std::vector<std::string> receive_parts(zmq::socket_t& socket) {
   std::vector<std::string> parts;
   bool more = true;
@@ -41,6 +42,7 @@ Result<std::unique_ptr<KeyGate>> KeyGate::open(zmq::context_t& context, std::fil
   try {
     zmq::socket_t socket(context, zmq::socket_type::rep);
     socket.set(zmq::sockopt::linger, 0);
+    socket.set(zmq::sockopt::rcvtimeo, static_cast<int>(kReadAgain.count() / 1'000'000));
     socket.bind("inproc://zeromq.zap.01");
     return std::unique_ptr<KeyGate>(new KeyGate(context, std::move(folder), std::move(socket)));
   } catch (const zmq::error_t& error) {
@@ -60,10 +62,13 @@ void KeyGate::run() {
   try {
     while (true) {
       const std::vector<std::string> parts = receive_parts(socket_);
+      read_keys();
+      if (parts.empty()) continue;
       const bool is_curve = parts.size() == kRequestParts && parts[kVersion] == "1.0" && parts[kDomainPart] == kDomain && parts[kMechanism] == "CURVE" &&
                             parts[kCredentials].size() == kKeyBytes;
       const bool is_welcome = is_curve && is_authorized(z85(parts[kCredentials]));
-      if (!is_welcome) ++refused_;
+      if (is_welcome) let_in_.insert(z85(parts[kCredentials]));
+      else ++refused_;
       const std::string request_id = parts.size() > kRequestId ? parts[kRequestId] : "";
       // 300, not 400: a client whose key is not known yet goes on knocking (once a second), and is let in when it is.
       const std::array<std::string, 6> reply{"1.0", request_id, is_welcome ? "200" : "300", is_welcome ? "OK" : "this key is not authorized", "", ""};
@@ -75,17 +80,20 @@ void KeyGate::run() {
   }
 }
 
-bool KeyGate::is_authorized(const std::string& public_key) {
-  if (const Nanoseconds now = monotonic_now(); now - read_ >= kReadAgain) {
-    keys_.clear();
-    std::error_code status;
-    for (const auto& entry : std::filesystem::directory_iterator(folder_, status)) {
-      if (entry.path().extension() != ".pub" || keys_.size() >= kMaxKeys) continue;
-      if (const auto key = read_curve_key(entry.path())) keys_.insert(key->public_key);
-    }
-    read_ = now;
+bool KeyGate::is_authorized(const std::string& public_key) { return keys_.contains(public_key); }
+
+/// Once a second at most.
+void KeyGate::read_keys() {
+  const Nanoseconds now = monotonic_now();
+  if (now - read_ < kReadAgain) return;
+  read_ = now;
+  keys_.clear();
+  std::error_code status;
+  for (const auto& entry : std::filesystem::directory_iterator(folder_, status)) {
+    if (entry.path().extension() != ".pub" || keys_.size() >= kMaxKeys) continue;
+    if (const auto key = read_curve_key(entry.path())) keys_.insert(key->public_key);
   }
-  return keys_.contains(public_key);
+  if (std::erase_if(let_in_, [&](const std::string& key) { return !keys_.contains(key); }) > 0) revoked_ = true;
 }
 
 }  // namespace gfp

@@ -41,6 +41,7 @@ void Outlet::send(const std::string& topic, const google::protobuf::Message& pay
   envelope.set_stamp_monotonic_ns(stamps.monotonic.count());
   envelope.set_stamp_publish_ns(realtime_now().count());
   envelope.set_dropped_since_last(dropped);
+  envelope.set_encoding(blob.encoding);
   zmq::message_t parts[] = {zmq::message_t(topic.data(), topic.size()), message_of(envelope), message_of(payload), message_of(std::move(blob))};
   const std::size_t count = parts[3].size() > 0 ? 4 : 3;
   for (std::size_t i = 0; i < count; ++i) bytes_ += parts[i].size();

@@ -14,18 +14,22 @@
 
 namespace gfp {
 
+/// Bytes that travel as they are, after the payload; `owner` keeps them alive until the socket has sent them.
+struct OutletBlob {
+  std::span<const std::byte> bytes;
+  std::shared_ptr<const void> owner;
+  v1::Envelope::Encoding encoding = v1::Envelope::ENCODING_RAW;
+};
+
 /// One XPUB socket with its subscribers' demand and its topics' sequences. One thread at a time.
 class Outlet {
  public:
   Outlet(BoundSocket socket, std::uint64_t session) : socket_(std::move(socket)), session_(session) {}
 
-  /// Bytes that travel as they are, after the payload; `owner` keeps them alive until the socket has sent them.
-  struct Blob {
-    std::span<const std::byte> bytes;
-    std::shared_ptr<const void> owner;
-  };
+  using Blob = OutletBlob;
 
   zmq::socket_t& socket() { return socket_.socket; }
+  BoundSocket& bound() { return socket_; }
   const Demand& demand() const { return demand_; }
 
   /// Of the next message of a topic.

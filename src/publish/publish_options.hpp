@@ -18,6 +18,7 @@ struct PublishOptions {
   int sensor_high_water_mark = 3;             ///< Messages that wait for one slow subscriber before the newest are dropped.
   int state_high_water_mark = 1000;
   double heartbeat_s = 1.0;                   ///< Status, topologies and last values are repeated this often.
+  std::string remote_depth = "zstd";          ///< Coding of depth over tcp; raw costs three times the bytes. ipc is raw.
   std::string vertices = "float32";           ///< Coding of vertices on the wire; int16 halves them (0.5 * extent / 32767).
 };
 
@@ -32,6 +33,7 @@ void visit_fields(PublishOptions& o, Visitor&& field) {
   field("sensor_high_water_mark", o.sensor_high_water_mark, 1, 100);
   field("state_high_water_mark", o.state_high_water_mark, 10, 100'000);
   field("heartbeat_s", o.heartbeat_s, 0.05, 60.0);
+  field("remote_depth", o.remote_depth, OneOf{{"zstd", "raw"}});
   field("vertices", o.vertices, OneOf{{"float32", "int16"}});
 }
 

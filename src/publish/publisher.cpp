@@ -1,9 +1,9 @@
 #include "publish/publisher.hpp"
 
 #include <algorithm>
-#include <array>
 
 #include "gfp/core/version.hpp"
+#include "wire/bounded_parse.hpp"
 #include "wire/scene_messages.hpp"
 #include "wire/sensor_messages.hpp"
 #include "wire/topics.hpp"
@@ -41,8 +41,14 @@ Result<Publisher::Sockets> Publisher::open_sockets(const PublishOptions& options
     return {};
   };
   using Type = zmq::socket_type;
-  if (auto made = bind(sockets.sensor, Type::xpub, or_default(options.sensor_endpoints, "sensor"), {options.sensor_high_water_mark, kMaxSubscriptionBytes, curve}); !made)
-    return tl::unexpected(made.error());
+  std::vector<std::string> local = or_default(options.sensor_endpoints, "sensor");
+  const auto first_remote = std::stable_partition(local.begin(), local.end(), [](const std::string& endpoint) { return !is_remote(endpoint); });
+  const std::vector<std::string> remote(first_remote, local.end());
+  local.erase(first_remote, local.end());
+  const SocketOptions sensor_options{options.sensor_high_water_mark, kMaxSubscriptionBytes, curve};
+  if (auto made = bind(sockets.sensor, Type::xpub, local, sensor_options); !made) return tl::unexpected(made.error());
+  if (!remote.empty())
+    if (auto made = bind(sockets.remote_sensor.emplace(), Type::xpub, remote, sensor_options); !made) return tl::unexpected(made.error());
   if (auto made = bind(sockets.state, Type::xpub, or_default(options.state_endpoints, "state"), {options.state_high_water_mark, kMaxSubscriptionBytes, curve}); !made)
     return tl::unexpected(made.error());
   if (auto made = bind(sockets.control, Type::router, or_default(options.control_endpoints, "control"), {ControlSocket::kHighWaterMark, ControlSocket::kMaxRequestBytes, curve}); !made)
@@ -65,6 +71,7 @@ Publisher::Publisher(const PublishOptions& options, std::uint64_t session, Contr
       context_(std::move(sockets.context)),
       sensor_(std::move(sockets.sensor), session),
       state_(std::move(sockets.state), session),
+      remote_sensor_(sockets.remote_sensor ? std::optional<Outlet>(std::in_place, std::move(*sockets.remote_sensor), session) : std::nullopt),
       control_(std::move(sockets.control)),
       gate_(std::move(sockets.gate)),
       thread_([this](const std::stop_token& stop) { run(stop); }) {}
@@ -81,15 +88,19 @@ void Publisher::stop() {
 void Publisher::run(const std::stop_token& stop) {
   const auto period = std::chrono::duration_cast<Nanoseconds>(std::chrono::duration<double>(options_.heartbeat_s));
   Nanoseconds next_heartbeat = monotonic_now() + period;
-  std::array<zmq::pollitem_t, 4> items = {{{sensor_.socket().handle(), 0, ZMQ_POLLIN, 0},
-                                           {state_.socket().handle(), 0, ZMQ_POLLIN, 0},
-                                           {control_.socket().handle(), 0, ZMQ_POLLIN, 0},
-                                           {nullptr, inbox_.wake_file(), ZMQ_POLLIN, 0}}};
+  std::vector<zmq::pollitem_t> items = {{sensor_.socket().handle(), 0, ZMQ_POLLIN, 0},
+                                        {state_.socket().handle(), 0, ZMQ_POLLIN, 0},
+                                        {control_.socket().handle(), 0, ZMQ_POLLIN, 0},
+                                        {nullptr, inbox_.wake_file(), ZMQ_POLLIN, 0}};
+  if (remote_sensor_) items.push_back({remote_sensor_->socket().handle(), 0, ZMQ_POLLIN, 0});
   while (!stop.stop_requested()) {
-    const Nanoseconds next = serve_at_ ? std::min(*serve_at_, next_heartbeat) : next_heartbeat;
+    cut_revoked();
+    Nanoseconds next = serve_at_ ? std::min(*serve_at_, next_heartbeat) : next_heartbeat;
+    if (is_cut_) next = std::min(next, monotonic_now() + kBindAgain);
     const auto wait = std::max(Nanoseconds(0), next - monotonic_now());
     zmq::poll(items, std::chrono::duration_cast<std::chrono::milliseconds>(wait) + std::chrono::milliseconds(1));
     sensor_.read_subscriptions([](const std::string&) {});
+    if (remote_sensor_) remote_sensor_->read_subscriptions([](const std::string&) {});
     state_.read_subscriptions([this](const std::string& prefix) { joined(prefix); });
     send_content();
     control_.read([this](PeerRequest request) { take_request(std::move(request)); });
@@ -102,9 +113,27 @@ void Publisher::run(const std::stop_token& stop) {
   send_daemon_status("stopping");
 }
 
+void Publisher::cut_revoked() {
+  std::vector<BoundSocket*> sockets{&state_.bound(), &control_.bound()};
+  if (remote_sensor_) sockets.push_back(&remote_sensor_->bound());
+  if (gate_ && gate_->take_revoked()) {
+    for (BoundSocket* socket : sockets) socket->cut_remote();
+    is_cut_ = true;
+    return;  // what is bound again at once would only be refused
+  }
+  if (!is_cut_) return;
+  is_cut_ = false;
+  for (BoundSocket* socket : sockets)
+    if (!socket->bind_again()) is_cut_ = true;
+}
+
 void Publisher::send_content() {
   Inbox::Content content = inbox_.take();
-  for (const auto& [name, frame] : content.frames) send_frame(frame);
+  for (const auto& [name, frame] : content.frames) {
+    dropped_ += frame.dropped;
+    send_frame(frame, sensor_, false);
+    if (remote_sensor_) send_frame(frame, *remote_sensor_, options_.remote_depth == "zstd");
+  }
   for (const auto& [name, scene] : content.scenes) take_scene(scene, content.lost[name]);
   for (const auto& [name, shadow] : content.shadows) send_shadow(shadow);
   for (auto& [name, status] : content.statuses) {
@@ -117,24 +146,33 @@ void Publisher::send_content() {
   for (const v1::LogRecord& record : content.log) state_.send(std::string(wire::kLogTopic), record, {});
 }
 
-void Publisher::send_frame(const Latest<FramePtr>& latest) {
+/// Where zstd has no memory left it goes as it is.
+Outlet::Blob Publisher::compressed_depth(const Frame& frame) {
+  const auto pixels = wire::depth_blob(frame);
+  const auto bytes = std::make_shared<std::string>();
+  if (!zstd_.append({reinterpret_cast<const char*>(pixels.data()), pixels.size()}, *bytes)) return {};
+  return {wire::as_bytes(*bytes), bytes, v1::Envelope::ENCODING_ZSTD};
+}
+
+void Publisher::send_frame(const Latest<FramePtr>& latest, Outlet& outlet, bool compress_depth) {
   const Frame& frame = *latest.value;
-  dropped_ += latest.dropped;
-  const auto wanted = [&](const std::string& topic) { return sensor_.demand().wants(topic); };
+  const auto wanted = [&](const std::string& topic) { return outlet.demand().wants(topic); };
   if (const std::string topic = wire::sensor_topic(frame.sensor, "depth"); wanted(topic)) {
     v1::DepthImage message;
     wire::fill_depth(frame, message);
-    sensor_.send(topic, message, frame.stamps, latest.dropped, {wire::depth_blob(frame), latest.value});
+    Outlet::Blob blob = compress_depth ? compressed_depth(frame) : Outlet::Blob();
+    if (blob.bytes.empty()) blob = {wire::depth_blob(frame), latest.value};
+    outlet.send(topic, message, frame.stamps, latest.dropped, std::move(blob));
   }
   if (const std::string topic = wire::sensor_topic(frame.sensor, "color"); !frame.color.empty() && wanted(topic)) {
     v1::ColorImage message;
     wire::fill_color(frame, message);
-    sensor_.send(topic, message, frame.stamps, latest.dropped, {wire::color_blob(frame), latest.value});
+    outlet.send(topic, message, frame.stamps, latest.dropped, {wire::color_blob(frame), latest.value});
   }
   if (const std::string topic = wire::sensor_topic(frame.sensor, "camera"); wanted(topic)) {
     v1::CameraInfo message;
     wire::fill_camera(frame, message);
-    sensor_.send(topic, message, frame.stamps, latest.dropped);
+    outlet.send(topic, message, frame.stamps, latest.dropped);
   }
 }
 
@@ -226,10 +264,11 @@ v1::DaemonStatus Publisher::daemon_status(const char* state) const {
   std::size_t objects = 0;
   for (const auto& [name, last] : last_scenes_) objects += last.scene->objects.size();
   status.set_objects(static_cast<std::uint32_t>(objects));
-  status.set_messages(sensor_.messages() + state_.messages());
-  status.set_bytes(sensor_.bytes() + state_.bytes());
+  const auto remote = [&](auto figure) { return remote_sensor_ ? figure(*remote_sensor_) : 0; };
+  status.set_messages(sensor_.messages() + state_.messages() + remote([](const Outlet& outlet) { return outlet.messages(); }));
+  status.set_bytes(sensor_.bytes() + state_.bytes() + remote([](const Outlet& outlet) { return outlet.bytes(); }));
   status.set_dropped(dropped_);
-  status.set_subscriptions(static_cast<std::uint32_t>(sensor_.demand().size() + state_.demand().size()));
+  status.set_subscriptions(static_cast<std::uint32_t>(sensor_.demand().size() + state_.demand().size() + remote([](const Outlet& outlet) { return outlet.demand().size(); })));
   if (gate_) status.set_refused(gate_->refused());
   return status;
 }

@@ -15,6 +15,7 @@
 #include "publish/key_gate.hpp"
 #include "publish/outlet.hpp"
 #include "publish/publish_options.hpp"
+#include "recording/compression.hpp"
 #include "wire/mesh_messages.hpp"
 
 namespace gfp {
@@ -26,6 +27,8 @@ using ControlHandler = std::function<void(PeerRequest)>;
 /// The only owner of the daemon's sockets: one thread, two XPUB sockets and a ROUTER (DESIGN, endpoints and topics).
 ///
 ///     drivers, pipeline, log --put()--> Inbox (latest value a kind) --publisher thread--> sensor | state socket
+///     Over tcp: sensor topics from a socket of their own, depth compressed. A key that is taken away ends all connections over tcp;
+///     those that may come again do so within a second.
 ///     control socket --requests--> snapshots: publisher thread; all else: ControlHandler --put()--> Inbox --> control socket
 ///
 /// State topics repeat their last value once in `heartbeat_s` of silence, topologies and statuses every heartbeat and to each
@@ -61,13 +64,16 @@ class Publisher {
     std::unique_ptr<zmq::context_t> context;
     std::unique_ptr<KeyGate> gate;  ///< Empty: tcp is open to everybody, or to nobody.
     BoundSocket sensor, state, control;
+    std::optional<BoundSocket> remote_sensor;  ///< Of the sensor topics over tcp: what is sent there is coded otherwise.
   };
   static Result<Sockets> open_sockets(const PublishOptions& options);
   Publisher(const PublishOptions& options, std::uint64_t session, ControlHandler control, Sockets sockets);
 
   void run(const std::stop_token& stop);
   void send_content();
-  void send_frame(const Latest<FramePtr>& frame);
+  void send_frame(const Latest<FramePtr>& frame, Outlet& outlet, bool compress_depth);
+  Outlet::Blob compressed_depth(const Frame& frame);
+  void cut_revoked();
   void take_scene(const Latest<ScenePtr>& scene, const std::set<std::uint64_t>& lost);
   void send_scene(const Scene& scene, std::uint64_t dropped, const std::set<std::uint64_t>& lost);
   void send_shadow(const Latest<ScenePtr>& shadow);
@@ -99,6 +105,7 @@ class Publisher {
     Nanoseconds sent{};  ///< Monotonic.
   };
   static constexpr std::size_t kMaxTopologies = 256;
+  static constexpr Nanoseconds kBindAgain{20'000'000};  ///< Between attempts to have cut endpoints back.
   static constexpr Nanoseconds kMinRepeat{50'000'000};  ///< Late joiners, however many, cause no more traffic than this.
 
   const PublishOptions options_;
@@ -111,6 +118,9 @@ class Publisher {
   std::atomic<Inbox*> mirror_ = nullptr;
   // From here on: the publisher thread's own.
   Outlet sensor_, state_;
+  std::optional<Outlet> remote_sensor_;
+  ZstdCompressor zstd_{1};
+  bool is_cut_ = false;  ///< Remote endpoints wait to be bound again.
   ControlSocket control_;
   std::unique_ptr<KeyGate> gate_;  ///< After the sockets: it ends the context's work before they close.
   std::map<std::uint64_t, KnownTopology> topologies_;

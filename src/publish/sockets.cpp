@@ -67,10 +67,31 @@ void protect(zmq::socket_t& socket, const CurveKey& key) {
 
 }  // namespace
 
+/// ZeroMQ owns the connections that came in over an endpoint with it: they end with it, and it has no other way to end one.
+void BoundSocket::cut_remote() {
+  for (const std::string& endpoint : remote) {
+    if (std::find(unbound.begin(), unbound.end(), endpoint) != unbound.end()) continue;
+    socket.unbind(endpoint);
+    unbound.push_back(endpoint);
+  }
+}
+
+bool BoundSocket::bind_again() {
+  std::erase_if(unbound, [&](const std::string& endpoint) {
+    try {
+      socket.bind(endpoint);
+      return true;
+    } catch (const zmq::error_t&) {  // the old one is closed by another thread, in its own time
+      return false;
+    }
+  });
+  return unbound.empty();
+}
+
 Result<BoundSocket> bind_socket(zmq::context_t& context, zmq::socket_type type, const std::vector<std::string>& endpoints, const SocketOptions& options) {
   BoundSocket bound;
   std::vector<std::string> ordered = endpoints;
-  const auto first_tcp = std::stable_partition(ordered.begin(), ordered.end(), [](const std::string& endpoint) { return !endpoint.starts_with("tcp://"); });
+  const auto first_tcp = std::stable_partition(ordered.begin(), ordered.end(), [](const std::string& endpoint) { return !is_remote(endpoint); });
   try {
     bound.socket = make_socket(context, type, options);
   } catch (const zmq::error_t& error) {
@@ -83,6 +104,7 @@ Result<BoundSocket> bind_socket(zmq::context_t& context, zmq::socket_type type, 
     try {
       if (endpoint == first_tcp && options.curve_key != nullptr) protect(bound.socket, *options.curve_key);
       bound.socket.bind(*endpoint);
+      if (is_remote(*endpoint)) bound.remote.push_back(bound.socket.get(zmq::sockopt::last_endpoint));
     } catch (const zmq::error_t& error) {
       return failure(ErrorCode::kIo, fmt::format("{}: {}", *endpoint, error.what()));
     }

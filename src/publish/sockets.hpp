@@ -28,8 +28,17 @@ class EndpointLock {
 /// A socket, bound to its endpoints, with the locks of those that are files. One thread at a time.
 struct BoundSocket {
   std::vector<EndpointLock> locks;
+  std::vector<std::string> remote;   ///< Its tcp endpoints, as the system bound them.
+  std::vector<std::string> unbound;  ///< Of these: those that are to be bound again.
   zmq::socket_t socket;
+
+  /// Ends every connection over tcp: peers connect again by themselves, and have to pass the KeyGate again.
+  void cut_remote();
+  /// Binds again what was cut; false: the system does not give all of it back yet, ask again soon.
+  bool bind_again();
 };
+
+inline bool is_remote(const std::string& endpoint) { return endpoint.starts_with("tcp://"); }
 
 /// What holds for all of the daemon's sockets.
 struct SocketOptions {

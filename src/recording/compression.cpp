@@ -71,6 +71,13 @@ Result<void> ZstdCompressor::append(std::string_view bytes, std::string& out) {
   return {};
 }
 
+Result<std::size_t> zstd_content_size(std::string_view bytes, std::size_t max) {
+  const unsigned long long size = ZSTD_getFrameContentSize(bytes.data(), bytes.size());
+  if (size == ZSTD_CONTENTSIZE_ERROR || size == ZSTD_CONTENTSIZE_UNKNOWN) return failure(ErrorCode::kCorruptData, "no zstd frame that says its content's size");
+  if (size > max) return failure(ErrorCode::kTooLarge, fmt::format("zstd promises {} bytes, at most {} are read", size, max));
+  return static_cast<std::size_t>(size);
+}
+
 Result<void> decompress(std::string_view compression, std::string_view bytes, std::size_t size, std::string& out) {
   if (compression == "zstd") return unzstd(bytes, size, out);
   if (compression == "lz4") return unlz4(bytes, size, out);

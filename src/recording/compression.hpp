@@ -24,6 +24,9 @@ class ZstdCompressor {
   std::unique_ptr<Context> context_;
 };
 
+/// The size that a zstd frame says its content has. Errors: kCorruptData (no frame, or it does not say), kTooLarge (above `max`).
+Result<std::size_t> zstd_content_size(std::string_view bytes, std::size_t max);
+
 /// What `bytes` hold, which must be exactly `size` bytes. `compression` as MCAP names it: `zstd`, `lz4` (frames) or empty.
 /// Errors: kUnsupported (another compression), kTooLarge (more than the compression could ever hold: refused before anything is
 /// allocated), kCorruptData.

@@ -104,7 +104,7 @@ def check_control():
 
 def check_curve(folder):
     """tcp with keys: who is authorized is served, in Python and by the tools; who is not gets nothing."""
-    from gfp_client import Curve, SceneSubscriber
+    from gfp_client import Curve, SceneSubscriber, Subscriber, depth_m
 
     folder = pathlib.Path(folder)
     for name in ("robot", "alice", "mallory"):
@@ -115,7 +115,11 @@ def check_curve(folder):
         probe.bind(("127.0.0.1", 0))
         tcp = f"tcp://127.0.0.1:{probe.getsockname()[1]}"
     config = folder / "curve.yaml"
-    publish = "".join(f"  {name}_endpoints: ['ipc://{folder}/curve/{name}'{', ' + repr(tcp) if name == 'state' else ''}]\n" for name in ("sensor", "state", "control"))
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        sensor_tcp = f"tcp://127.0.0.1:{probe.getsockname()[1]}"
+    remote = {"state": tcp, "sensor": sensor_tcp}
+    publish = "".join(f"  {name}_endpoints: ['ipc://{folder}/curve/{name}'{', ' + repr(remote[name]) if name in remote else ''}]\n" for name in ("sensor", "state", "control"))
     config.write_text(CONFIG + "publish:\n" + publish)
     assert run(GFPD, "--config", str(config)).returncode == 78, "tcp was opened without a key"
     config.write_text(config.read_text() + f"  curve_key: {folder}/robot.key\n  authorized_keys: {folder}/authorized\n")
@@ -123,6 +127,20 @@ def check_curve(folder):
     try:
         scenes = SceneSubscriber([tcp], curve=Curve(folder / "robot.pub", folder / "alice.key"))
         assert wait_for("a scene over tcp with CURVE", lambda: scenes.next(1)).header.sensor == "virtual"
+        subscribers = [Subscriber(["/gfp/sensor/virtual/depth/"], [endpoint], curve=curve) for endpoint, curve in
+                       ((sensor_tcp, Curve(folder / "robot.pub", folder / "alice.key")), (f"ipc://{folder}/curve/sensor", None))]
+        images = [{}, {}]  # by sequence: one of both that is the same frame
+
+        def same_frame():
+            for subscriber, seen in zip(subscribers, images):
+                if message := subscriber.receive(0.1):
+                    seen[message.payload.header.sequence] = message
+            both = set(images[0]) & set(images[1])
+            return tuple(seen[min(both)] for seen in images) if both else None
+
+        far, near = wait_for("a depth image over tcp and over ipc", same_frame)
+        assert (far.envelope.encoding, near.envelope.encoding) == (1, 0)
+        assert (depth_m(far) == depth_m(near)).all() and depth_m(far).max() > 0.3
         keys = ["--endpoint", tcp, "--server-key", str(folder / "robot.pub"), "--key"]
         top = run(GFP, "top", "--count", "1", "--json", *keys, str(folder / "alice.key"))
         assert top.returncode == 0 and "status" in top.stdout, top.stderr

@@ -86,6 +86,34 @@ TEST_F(Curve, KeysAreAddedAndRevokedWhileItRuns) {
   EXPECT_FALSE(is_served);
 }
 
+// Who is shut out hears nothing more on a connection that stood; the others are back within a moment, and local ones never notice.
+TEST_F(Curve, ARevokedKeyEndsItsStandingConnection) {
+  authorize("bob", mallory_);
+  const auto listen = [&](const std::string& endpoint, const CurveAccess& curve) {
+    SubscriberOptions options;
+    options.endpoints = {endpoint};
+    options.curve = curve;
+    return std::move(*Subscriber::connect({"/gfp/status/gfpd/"}, options));
+  };
+  const auto hears = [](Subscriber& subscriber, std::chrono::milliseconds patience) { return subscriber.receive(patience).has_value(); };
+  Subscriber bob = listen(tcp(), {server_.public_key, mallory_}), alice = listen(tcp(), {server_.public_key, alice_}), local = listen(options_.state_endpoints[0], {});
+  ASSERT_TRUE(hears(bob, kLong) && hears(alice, kLong) && hears(local, kLong));
+  std::filesystem::remove(folder_ / "authorized" / "bob.pub");
+  const auto deadline = std::chrono::steady_clock::now() + kLong;
+  while (hears(bob, kRefusal) && std::chrono::steady_clock::now() < deadline) {  // a status comes every 50 ms
+  }
+  EXPECT_FALSE(hears(bob, kRefusal));
+  while (alice.receive(0ms)) {  // what came before
+  }
+  EXPECT_TRUE(hears(alice, kLong));
+  EXPECT_TRUE(ControlClient::connect({options_.control_endpoints[1], kLong, {server_.public_key, alice_}})->snapshot().has_value());
+  while (local.receive(0ms)) {
+  }
+  EXPECT_TRUE(hears(local, kLong));
+  EXPECT_EQ(local.counts().missed, 0U);
+  EXPECT_FALSE(hears(bob, kRefusal));
+}
+
 TEST(CurveKeys, AreWrittenOnceAndReadBack) {
   const test::TemporaryFolder folder;
   const CurveKey key = new_curve_key();

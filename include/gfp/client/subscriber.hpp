@@ -44,7 +44,7 @@ struct SubscriberOptions {
 /// What happened on the way; all since connect().
 struct SubscriberCounts {
   std::uint64_t received = 0;
-  std::uint64_t bytes = 0;
+  std::uint64_t bytes = 0;     ///< As they came, compressed or not.
   std::uint64_t missed = 0;    ///< Gaps in `seq`: lost between the sender's socket and here.
   std::uint64_t restarts = 0;  ///< Times a topic came with a new session: the daemon was started anew.
   std::uint64_t stale = 0;
