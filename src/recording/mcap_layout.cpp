@@ -114,6 +114,14 @@ std::optional<McapChannel> channel_from(std::string_view content) {
   return channel;
 }
 
+std::optional<std::pair<std::string, std::map<std::string, std::string>>> metadata_from(std::string_view content) {
+  ByteGet get(content);
+  std::string name(get.text());
+  auto values = map_from(get);
+  if (!get.ok() || get.left() != 0) return std::nullopt;
+  return std::pair{std::move(name), std::move(values)};
+}
+
 std::optional<McapChunkInfo> chunk_index_from(std::string_view content) {
   ByteGet get(content);
   McapChunkInfo chunk;

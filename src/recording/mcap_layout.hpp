@@ -42,6 +42,7 @@ void put_summary_offset(std::string& out, Op group, std::uint64_t start, std::ui
 /// Contents of records; empty where they break the format.
 std::optional<McapSchema> schema_from(std::string_view content);
 std::optional<McapChannel> channel_from(std::string_view content);
+std::optional<std::pair<std::string, std::map<std::string, std::string>>> metadata_from(std::string_view content);
 std::optional<McapChunkInfo> chunk_index_from(std::string_view content);
 
 struct ChunkContent {

@@ -110,8 +110,8 @@ class Scanner {
     if (length > options_.max_chunk_bytes) return lose(position, fmt::format("a chunk of {} bytes, at most {} are read", length, options_.max_chunk_bytes));
     if (auto read = source_.read_at(position, static_cast<std::size_t>(length), buffer_); !read) return tl::unexpected(read.error());
     const auto content = mcap::chunk_from(std::string_view(buffer_).substr(std::min<std::size_t>(buffer_.size(), kRecordHeaderBytes)));
-    if (!content) return lose(position, "a chunk that is no chunk");
-    if (auto done = mcap::decompress_chunk(*content, options_, records_); !done) return lose(position, done.error().what);
+    if (!content) return lose_chunk(position, header, "a chunk that is no chunk");
+    if (auto done = mcap::decompress_chunk(*content, options_, records_); !done) return lose_chunk(position, header, done.error().what);
     const auto number = static_cast<std::uint32_t>(scan_.chunks.size());
     const std::size_t messages_before = scan_.messages.size();
     McapRegistry found;
@@ -124,7 +124,7 @@ class Scanner {
                                                         }});
     if (!visited) {
       scan_.messages.resize(messages_before);
-      return lose(position, visited.error().what);
+      return lose_chunk(position, header, visited.error().what);
     }
     if (scan_.messages.size() > options_.max_messages) return too_many();
     for (auto& [id, schema] : found.schemas) scan_.registry.schemas.insert_or_assign(id, std::move(schema));
@@ -181,9 +181,21 @@ class Scanner {
         const std::uint32_t length = get.number<std::uint32_t>();
         return get.ok() && length == get.left() && length % 16 == 0;
       }
+      case Op::kMetadata: {
+        auto found = read(options_.max_definition_bytes) ? mcap::metadata_from(buffer_) : std::nullopt;
+        if (found) scan_.metadata.push_back({position, header.end - position, std::move(found->first), std::move(found->second)});
+        return found.has_value();
+      }
       case Op::kChunk: return false;  // its lengths disagree
       default: return true;
     }
+  }
+
+  /// Where a record follows it, the damage is the chunk's own: what stands between it and the next one is not lost with it.
+  Result<std::uint64_t> lose_chunk(std::uint64_t position, const RecordHeader& header, std::string why) {
+    if (!may_begin_record(header.end)) return lose(position, std::move(why));
+    scan_.damage.push_back({position, header.end, std::move(why)});
+    return header.end;
   }
 
   /// Notes the damage that begins here and finds the next chunk.

@@ -21,12 +21,13 @@ Result<McapWriter> McapWriter::begin(std::unique_ptr<ByteFile> file) {
 }
 
 McapWriter McapWriter::resume(std::unique_ptr<ByteFile> file, std::uint64_t end, std::vector<McapChunkInfo> chunks,
-                              std::map<std::uint16_t, std::uint64_t> message_counts) {
+                              std::map<std::uint16_t, std::uint64_t> message_counts, std::vector<MetadataEntry> metadata) {
   McapWriter writer(std::move(file));
   writer.end_ = end;
   writer.has_crc_ = false;
   writer.chunks_ = std::move(chunks);
   writer.message_counts_ = std::move(message_counts);
+  writer.metadata_ = std::move(metadata);
   return writer;
 }
 

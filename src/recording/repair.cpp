@@ -89,6 +89,12 @@ bool can_close_in_place(const McapScan& scan) {
   return std::all_of(scan.chunks.begin(), scan.chunks.end() - 1, [](const McapScan::Chunk& chunk) { return chunk.has_sound_index; });
 }
 
+Result<void> append_metadata(const std::vector<McapMetadata>& metadata, McapWriter& writer) {
+  for (const McapMetadata& one : metadata)
+    if (auto appended = writer.append_metadata(one.name, one.values); !appended) return appended;
+  return {};
+}
+
 Result<RepairReport> close_in_place(const fs::path& file, Patient patient) {
   TimesByChunk times = times_by_chunk(patient.scan);
   const auto last = static_cast<std::uint32_t>(patient.scan.chunks.size() - 1);
@@ -102,8 +108,16 @@ Result<RepairReport> close_in_place(const fs::path& file, Patient patient) {
     before.push_back(patient.scan.chunks[i].info);
     for (const auto& [channel, messages] : times[i]) counts[channel] += messages.size();
   }
-  McapWriter writer = McapWriter::resume(std::move(*out), patient.scan.chunks[last].info.offset, std::move(before), std::move(counts));
+  const std::uint64_t end = patient.scan.chunks[last].info.offset;
+  std::vector<McapWriter::MetadataEntry> kept;
+  std::vector<McapMetadata> behind;  // what is written over is written again
+  for (const McapMetadata& one : patient.scan.metadata) {
+    if (one.offset < end) kept.push_back({one.offset, one.length, one.name});
+    else behind.push_back(one);
+  }
+  McapWriter writer = McapWriter::resume(std::move(*out), end, std::move(before), std::move(counts), std::move(kept));
   if (auto appended = writer.append(*chunk); !appended) return tl::unexpected(appended.error());
+  if (auto appended = append_metadata(behind, writer); !appended) return tl::unexpected(appended.error());
   if (auto finished = writer.finish(patient.scan.registry); !finished) return tl::unexpected(finished.error());
   return report_of(patient, Outcome::kClosed);
 }
@@ -142,6 +156,7 @@ Result<RepairReport> copy_sound_part(Patient patient, const fs::path& output, co
     if (auto appended = writer->append(*chunk); !appended) return tl::unexpected(appended.error());
   }
   if (auto appended = append_loose(patient, options, *writer); !appended) return tl::unexpected(appended.error());
+  if (auto appended = append_metadata(patient.scan.metadata, *writer); !appended) return tl::unexpected(appended.error());
   if (auto finished = writer->finish(patient.scan.registry); !finished) return tl::unexpected(finished.error());
   return report_of(patient, is_cut_only(patient.scan) ? Outcome::kClosed : Outcome::kLost);
 }

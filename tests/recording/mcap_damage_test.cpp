@@ -1,6 +1,9 @@
 // What a kill, a full disk or a rotten disk leaves of a recording: everything but the chunk that was hit.
 #include <gtest/gtest.h>
 
+#include <fstream>
+#include <iterator>
+
 #include "gfp/recording/repair.hpp"
 #include "recording/sample_recording.hpp"
 #include "support/mutate.hpp"
@@ -105,7 +108,8 @@ TEST(McapDamage, RepairNamesWhatIsLost) {
   EXPECT_EQ(report->outcome, RepairReport::Outcome::kLost);
   ASSERT_EQ(report->damage.size(), 1U);
   EXPECT_EQ(report->damage[0].begin, places[3].begin);
-  EXPECT_EQ(report->damage[0].end, places[4].begin);
+  EXPECT_GT(report->damage[0].end, report->damage[0].begin + 100) << "the chunk's record";
+  EXPECT_LE(report->damage[0].end, places[4].begin) << "and none of the next";
   EXPECT_EQ(report->messages, kCount - places[3].messages.size());
   EXPECT_EQ(repair_mcap_to(file, folder / "out.mcap").error().code, ErrorCode::kInvalidArgument) << "never over another file";
   EXPECT_EQ(repair_mcap(file)->outcome, RepairReport::Outcome::kLost);
@@ -113,6 +117,58 @@ TEST(McapDamage, RepairNamesWhatIsLost) {
 }
 
 // Whatever the bytes, an error or messages that are right; the file that is repaired is readable.
+/// A file with metadata before, between and behind its chunks; without its end where it was cut.
+std::string file_with_metadata(bool is_cut) {
+  const auto state = std::make_shared<test::MemoryFile::State>();
+  McapEncoder encoder({16'384, 200'000'000, 1});
+  test::add_sample_channels(encoder);
+  McapWriter writer = McapWriter::begin(std::make_unique<test::MemoryFile>(state)).value();
+  EXPECT_TRUE(writer.append_metadata("robot", {{"name", "tidy"}, {"arm", "left"}}));
+  for (std::uint32_t i = 0; i < 40; ++i)
+    if (const auto chunk = encoder.add(test::as_message(sample_message(i), i)).value()) {
+      EXPECT_TRUE(writer.append(*chunk));
+      EXPECT_TRUE(writer.append_metadata("chunk " + std::to_string(i), {}));
+    }
+  if (!is_cut) {
+    EXPECT_TRUE(writer.finish(encoder.registry()));
+  }
+  return state->bytes;
+}
+
+TEST(McapDamage, RepairKeepsMetadata) {
+  const test::TemporaryFolder folder;
+  const auto names = [](const std::string& bytes) {
+    const auto source = source_of(bytes);
+    const McapScan scan = scan_mcap(*source).value();
+    std::vector<std::string> found;
+    for (const McapMetadata& one : scan.metadata) found.push_back(one.name);
+    return found;
+  };
+  const auto read = [](const std::filesystem::path& file) {
+    std::ifstream in(file, std::ios::binary);
+    return std::string(std::istreambuf_iterator<char>(in), {});
+  };
+  const std::string whole = file_with_metadata(false);
+  const auto expected = names(whole);
+  ASSERT_GT(expected.size(), 3U);
+  EXPECT_EQ(repair_mcap(folder.write("whole.mcap", whole))->outcome, RepairReport::Outcome::kSound);
+  const auto cut = folder.write("cut.mcap", file_with_metadata(true));
+  EXPECT_EQ(repair_mcap(cut)->outcome, RepairReport::Outcome::kClosed) << "closed in place";
+  std::string rotten = whole;
+  const auto hit = places_of(whole).at(1);
+  for (std::uint64_t at = hit.begin + 100; at < hit.begin + 110; ++at) rotten[at] = static_cast<char>(~rotten[at]);
+  const auto copied = folder.write("rotten.mcap", rotten);
+  EXPECT_EQ(repair_mcap(copied)->outcome, RepairReport::Outcome::kLost) << "copied";
+  for (const auto& file : {cut, copied}) {
+    const std::string bytes = read(file);
+    EXPECT_EQ(names(bytes), expected) << file;
+    const auto source = source_of(bytes);
+    const McapScan scan = scan_mcap(*source).value();
+    EXPECT_EQ(scan.metadata.at(0).values, (std::map<std::string, std::string>{{"arm", "left"}, {"name", "tidy"}}));
+    EXPECT_EQ(repair_mcap(file)->outcome, RepairReport::Outcome::kSound) << "its summary is right: " << file;
+  }
+}
+
 TEST(McapDamage, SurvivesHostileBytes) {
   const std::string sound = sample_file(40);
   const test::TemporaryFolder folder;

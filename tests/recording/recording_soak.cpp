@@ -1,4 +1,4 @@
-// Kills, rotten bits and refused writes of recordings, in great numbers. The ledger has a line for every block of trials:
+// Kills, rotten bits, refused writes and power losses of recordings, in great numbers. The ledger has a line for every block of trials:
 // {"kind": "kill", "first": 0, "count": 20, "lost_messages_max": 31, ...}; a run goes on behind the last one and ends at the first failure.
 #include <sys/mman.h>
 #include <sys/wait.h>
@@ -9,6 +9,7 @@
 #include <atomic>
 #include <csignal>
 #include <fstream>
+#include <functional>
 #include <iostream>
 #include <nlohmann/json.hpp>
 
@@ -33,8 +34,8 @@ struct Trial {
 
 const McapChannelSpec kSpecs[3] = {{"/one/", "test", "a", "text", std::string(300, 'a'), {}}, {"/two/", "test", "b", "text", "b", {}}, {"/three/", "test", "c", "text", "c", {}}};
 
-/// All messages of the recordings of a folder; a message that is other than it was is a failure.
-std::map<std::uint32_t, bool> read_folder(const std::filesystem::path& folder, std::string& failure) {
+/// All messages of the recordings of a folder; a message that is other than it was (cut to `most_bytes`) is a failure.
+std::map<std::uint32_t, bool> read_folder(const std::filesystem::path& folder, std::string& failure, std::size_t most_bytes = std::string::npos) {
   std::map<std::uint32_t, bool> found;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     if (entry.path().extension() != ".mcap") continue;
@@ -44,7 +45,7 @@ std::map<std::uint32_t, bool> read_folder(const std::filesystem::path& folder, s
       continue;
     }
     for (const auto& [i, message] : test::all_messages(*reader)) {
-      if (message.data != test::sample_message(i % kSamples).data) failure = "message " + std::to_string(i) + " is damaged";
+      if (message.data != test::sample_message(i % kSamples).data.substr(0, most_bytes)) failure = "message " + std::to_string(i) + " is damaged";
       found[i] = true;
     }
   }
@@ -196,6 +197,110 @@ Trial write_trial(std::uint64_t number) {
   return trial;
 }
 
+/// What a recording asked of its disk, in order.
+struct DiskEvent {
+  enum class Kind { kWrite, kTruncate, kSync } kind = Kind::kWrite;
+  std::uint64_t offset = 0;  ///< Of a write; of kTruncate the size.
+  std::string bytes;
+  std::uint64_t messages = 0;  ///< Of kSync: in the chunks that were written before it.
+};
+
+class TracedFile final : public ByteFile {
+ public:
+  TracedFile(std::vector<DiskEvent>& events, const std::function<std::uint64_t()>& messages) : events_(events), messages_(messages) {}
+  Result<void> write_at(std::uint64_t offset, std::string_view bytes) override { return events_.push_back({DiskEvent::Kind::kWrite, offset, std::string(bytes), 0}), Result<void>{}; }
+  Result<void> truncate(std::uint64_t size) override { return events_.push_back({DiskEvent::Kind::kTruncate, size, {}, 0}), Result<void>{}; }
+  Result<void> sync() override { return events_.push_back({DiskEvent::Kind::kSync, 0, {}, messages_()}), Result<void>{}; }
+
+ private:
+  std::vector<DiskEvent>& events_;
+  const std::function<std::uint64_t()>& messages_;
+};
+
+class TracingStorage final : public RecordingStorage {
+ public:
+  std::vector<DiskEvent> events;
+  std::function<std::uint64_t()> messages;
+  Result<std::unique_ptr<ByteFile>> create(const std::filesystem::path&) override { return std::unique_ptr<ByteFile>(std::make_unique<TracedFile>(events, messages)); }
+  Result<void> rename(const std::filesystem::path&, const std::filesystem::path&) override { return {}; }
+  Result<void> remove(const std::filesystem::path&) override { return {}; }
+  std::vector<std::filesystem::path> closed_files(const std::filesystem::path&, const std::string&) override { return {}; }
+  Result<std::uint64_t> free_bytes(const std::filesystem::path&) override { return 1ULL << 40U; }
+};
+
+/// One file of a minute: chunks of 200 ms, synchronised every 800 ms, and its end.
+std::vector<DiskEvent> make_trace() {
+  TracingStorage storage;
+  RecordingOptions options;
+  options.mode = "continuous";
+  RecordingSeries series(options, storage);
+  storage.messages = [&] { return series.status().messages; };
+  Nanoseconds now{};
+  for (std::uint32_t i = 0; i < 6000; ++i) {
+    McapMessage message = test::as_message(test::sample_message(i % kSamples), i);
+    message.log_time_ns = 1'000'000'000ULL + 10'000'000ULL * i;
+    message.data = message.data.substr(0, 100);
+    series.put(kSpecs[i % 3], message, now += Nanoseconds(10'000'000));
+    series.tick(now);
+  }
+  series.close();
+  return storage.events;
+}
+
+void carry_out(const DiskEvent& event, std::string& disk) {
+  if (event.kind == DiskEvent::Kind::kSync) return;
+  if (event.kind == DiskEvent::Kind::kTruncate) return disk.resize(static_cast<std::size_t>(event.offset));
+  disk.resize(std::max<std::size_t>(disk.size(), static_cast<std::size_t>(event.offset) + event.bytes.size()));
+  std::copy(event.bytes.begin(), event.bytes.end(), disk.begin() + static_cast<std::ptrdiff_t>(event.offset));
+}
+
+/// A write of which only some sectors have come to the disk: the others are as they were, or zeros.
+DiskEvent torn(DiskEvent event, const std::string& disk, Random& random) {
+  constexpr std::uint64_t kSector = 512;
+  for (std::uint64_t at = 0; at < event.bytes.size();) {
+    const std::uint64_t end = std::min<std::uint64_t>(event.bytes.size(), at + kSector - (event.offset + at) % kSector);
+    if (random.below(2) == 0)
+      for (; at < end; ++at) event.bytes[at] = event.offset + at < disk.size() ? disk[event.offset + at] : '\0';
+    at = end;
+  }
+  return event;
+}
+
+/// Power goes after a number of the recording's requests: what was synchronised is on the disk; of what came after it each write is there,
+/// torn or not there, in any order. What was synchronised is all found again, and nothing else is other than it was.
+Trial power_trial(std::uint64_t seed) {
+  static const std::vector<DiskEvent> kTrace = make_trace();
+  Random random(seed);
+  const std::size_t prefix = seed % (kTrace.size() + 1);  // every one of them, again and again
+  std::string disk;
+  std::vector<const DiskEvent*> loose;
+  std::uint64_t durable = 0;
+  for (std::size_t i = 0; i < prefix; ++i) {
+    loose.push_back(&kTrace[i]);
+    if (kTrace[i].kind != DiskEvent::Kind::kSync) continue;
+    for (const DiskEvent* event : loose) carry_out(*event, disk);
+    loose.clear();
+    durable = kTrace[i].messages;
+  }
+  for (std::size_t i = loose.size(); i > 1; --i) std::swap(loose[i - 1], loose[random.below(static_cast<std::uint32_t>(i))]);
+  for (const DiskEvent* event : loose) {
+    const auto fate = random.below(3);
+    if (fate == 0) carry_out(*event, disk);
+    if (fate == 1) carry_out(event->kind == DiskEvent::Kind::kWrite ? torn(*event, disk, random) : *event, disk);
+  }
+  const test::TemporaryFolder folder;
+  const auto file = folder.write("gfp_1.mcap", disk);
+  Trial trial;
+  const auto repaired = repair_mcap(file);
+  if (!repaired && durable > 0) trial.failure = "not repaired: " + repaired.error().what;
+  const auto found = repaired ? read_folder(folder.path(), trial.failure, 100) : std::map<std::uint32_t, bool>();
+  for (std::uint32_t i = 0; i < durable; ++i)
+    if (!found.contains(i)) trial.failure = "message " + std::to_string(i) + " of " + std::to_string(durable) + " that were synchronised is gone";
+  if (!trial.failure.empty()) trial.failure += ", power lost after " + std::to_string(prefix) + " of " + std::to_string(kTrace.size()) + " requests";
+  trial.largest = {{"messages_max", found.size()}, {"unsynchronised_writes_max", loose.size()}};
+  return trial;
+}
+
 std::uint64_t done_in(const std::string& ledger, const std::string& kind) {
   std::ifstream in(ledger);
   std::uint64_t done = 0;
@@ -230,14 +335,15 @@ bool run_kind(const std::string& ledger, const std::string& kind, std::uint64_t 
 
 int main(int argc, char** argv) {
   std::string ledger;
-  std::uint64_t kills = 0, flips = 0, writes = 0;
-  CLI::App app{"Kills, rotten bits and refused writes of recordings", "gfp_recording_soak"};
+  std::uint64_t kills = 0, flips = 0, writes = 0, powers = 0;
+  CLI::App app{"Kills, rotten bits, refused writes and power losses of recordings", "gfp_recording_soak"};
   app.add_option("LEDGER", ledger, "Where results go, and where a run goes on")->required();
   app.add_option("--kills", kills);
   app.add_option("--flips", flips);
   app.add_option("--writes", writes);
+  app.add_option("--powers", powers);
   CLI11_PARSE(app, argc, argv);
   const bool sound = gfp::run_kind(ledger, "kill", kills, gfp::kill_trial) && gfp::run_kind(ledger, "flip", flips, gfp::flip_trial) &&
-                     gfp::run_kind(ledger, "write", writes, gfp::write_trial);
+                     gfp::run_kind(ledger, "write", writes, gfp::write_trial) && gfp::run_kind(ledger, "power", powers, gfp::power_trial);
   return sound ? 0 : 1;
 }

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -31,6 +32,13 @@ struct McapDamage {
   std::string why;
 };
 
+/// Pairs of a name and a value that somebody put into the file beside its messages.
+struct McapMetadata {
+  std::uint64_t offset = 0, length = 0;  ///< Of its record.
+  std::string name;
+  std::map<std::string, std::string> values;
+};
+
 /// What a walk through all bytes of a file found.
 struct McapScan {
   struct Chunk {
@@ -40,6 +48,7 @@ struct McapScan {
   McapRegistry registry;
   std::vector<Chunk> chunks;
   std::vector<McapMessageRef> messages;  ///< In file order.
+  std::vector<McapMetadata> metadata;    ///< In file order.
   std::vector<McapDamage> damage;
   bool is_finished = false;              ///< The data section was closed; only then a summary can follow.
   std::uint64_t sound_end = 0;           ///< Behind the last whole record of the data section.

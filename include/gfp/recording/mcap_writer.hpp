@@ -18,8 +18,13 @@ class McapWriter {
  public:
   /// Writes the beginning of the file. Errors: of the file.
   static Result<McapWriter> begin(std::unique_ptr<ByteFile> file);
-  /// Goes on behind the first `end` bytes of a file that has these chunks; what is behind them will be overwritten. For repair.
-  static McapWriter resume(std::unique_ptr<ByteFile> file, std::uint64_t end, std::vector<McapChunkInfo> chunks, std::map<std::uint16_t, std::uint64_t> message_counts);
+  struct MetadataEntry {
+    std::uint64_t offset = 0, length = 0;
+    std::string name;
+  };
+  /// Goes on behind the first `end` bytes of a file that has these chunks and metadata; what is behind them will be overwritten. For repair.
+  static McapWriter resume(std::unique_ptr<ByteFile> file, std::uint64_t end, std::vector<McapChunkInfo> chunks, std::map<std::uint16_t, std::uint64_t> message_counts,
+                           std::vector<MetadataEntry> metadata);
 
   Result<void> append(const McapChunk& chunk);
   Result<void> append_definitions(const McapRegistry& registry);  ///< Schemas and channels, for chunks that do not carry their own.
@@ -38,11 +43,6 @@ class McapWriter {
   explicit McapWriter(std::unique_ptr<ByteFile> file) : file_(std::move(file)) {}
   std::string summary_at(std::uint64_t start, const McapRegistry& registry) const;
   Result<void> write(std::string_view bytes);
-
-  struct MetadataEntry {
-    std::uint64_t offset = 0, length = 0;
-    std::string name;
-  };
 
   std::unique_ptr<ByteFile> file_;
   std::uint64_t end_ = 0;
