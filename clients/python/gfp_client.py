@@ -12,7 +12,7 @@ source tree, and in the installed share/gfp; where it is in none of them, the da
 Over tcp, with a key (`gfp key new me`, me.pub among the daemon's authorized keys):
     SceneSubscriber(["tcp://robot:5602"], curve=Curve("robot.pub", "me.key"))
 
-Asking instead of listening: Control().snapshot(), .fit(), .best_grasp(), .parameters(), .set_parameters().
+Asking instead of listening: Control().snapshot(), .fit(), .best_grasp(), .parameters(), .set_parameters(), .recorder().
 
 Metres and radians; camera frame x right, y down, z forward; T_a_b maps b coordinates into a (4x4).
 """
@@ -314,6 +314,10 @@ class Control:
     def set_parameters(self, **values):
         """As in set_parameters(**{"pipeline.segmentation.min_points": 200}); all or nothing, from the next frame on."""
         return dict(self.ask(set_parameters={"values": {path: str(value) for path, value in values.items()}}).parameters.values)
+
+    def recorder(self, action="status"):
+        """A gfp.v1.Recording after `start`, `stop`, `trigger` (of the ring) or `status` of the daemon's own recorder."""
+        return self.ask(record={"action": f"ACTION_{action.upper()}"}).recording
 
     def close(self):
         self._socket.close()

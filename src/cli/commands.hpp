@@ -23,6 +23,7 @@ void add_experiment_command(CLI::App& app, ExitStatus& status);
 void add_key_command(CLI::App& app, ExitStatus& status);
 void add_primitive_command(CLI::App& app, ExitStatus& status);
 void add_record_command(CLI::App& app, ExitStatus& status);
+void add_recorder_command(CLI::App& app, ExitStatus& status);
 void add_repair_command(CLI::App& app, ExitStatus& status);
 void add_replay_command(CLI::App& app, ExitStatus& status);
 void add_sub_command(CLI::App& app, ExitStatus& status);

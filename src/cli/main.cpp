@@ -23,6 +23,7 @@ int run(int argc, char** argv) {
   gfp::add_devices_command(app, status);
   gfp::add_doctor_command(app, status);
   gfp::add_record_command(app, status);
+  gfp::add_recorder_command(app, status);
   gfp::add_replay_command(app, status);
   gfp::add_repair_command(app, status);
   gfp::add_diff_command(app, status);

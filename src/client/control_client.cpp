@@ -143,6 +143,16 @@ Result<std::map<std::string, std::string>> ControlClient::parameters(const std::
   return link_->ask(std::move(request)).map([](const v1::ControlReply& reply) { return plain(reply.parameters()); });
 }
 
+Result<RecorderState> ControlClient::recorder(RecorderAction action) {
+  static_assert(static_cast<int>(RecorderAction::kTrigger) == static_cast<int>(v1::RecordRequest::ACTION_TRIGGER));
+  v1::ControlRequest request;
+  request.mutable_record()->set_action(static_cast<v1::RecordRequest::Action>(action));
+  return link_->ask(std::move(request)).map([](const v1::ControlReply& reply) {
+    const v1::Recording& sent = reply.recording();
+    return RecorderState{sent.mode(), sent.state(), sent.file(), sent.files(), sent.messages(), sent.bytes(), sent.lost_messages(), sent.last_error()};
+  });
+}
+
 Result<std::map<std::string, std::string>> ControlClient::set_parameters(const std::map<std::string, std::string>& values) {
   v1::ControlRequest request;
   request.mutable_set_parameters()->mutable_values()->insert(values.begin(), values.end());

@@ -26,6 +26,7 @@ Result<std::unique_ptr<Daemon>> Daemon::start(DaemonOptions options, DaemonParts
   if (options.sensors.empty()) return failure(ErrorCode::kInvalidArgument, "sensors: none is configured, expected at least one");
   std::unique_ptr<Daemon> daemon(new Daemon(options, std::move(parts)));
   Daemon& self = *daemon;
+  self.recorder_ = std::make_unique<Recorder>(options.recording, hand_over(options));  // before the desk, which may ask for it
   self.desk_ = std::make_unique<ControlDesk>([&self](const v1::ControlRequest& request) { return self.answer(request); });
   const auto to_socket = [&self](PeerReply reply) {
     MutexLock lock(self.mutex_);
@@ -37,7 +38,6 @@ Result<std::unique_ptr<Daemon>> Daemon::start(DaemonOptions options, DaemonParts
     MutexLock lock(self.mutex_);  // the desk may be at work already
     self.publisher_ = std::move(*publisher);
   }
-  if (options.recording.mode != "off") self.recorder_ = std::make_unique<Recorder>(options.recording, hand_over(options));
   self.shadow_ = std::make_unique<Shadow>(self.parts_.shadow, *self.publisher_);
   self.pipeline_ = std::jthread([&self](const std::stop_token& stop) { self.run_pipeline(stop); });
   auto sources = daemon->make_sources(options);
@@ -122,7 +122,7 @@ void Daemon::run_pipeline(const std::stop_token& stop) {
       PipelineResult result = arena.execute([&] { return parts_.process(**frame, memory, *options); });
       memory = std::move(result.memory);
       const auto scene = std::make_shared<const Scene>(std::move(result.scene));
-      if (recorder_) recorder_->put(scene);
+      recorder_->put(scene);
       publisher_->put(scene);
       if (!options->shadow.empty()) shadow_->put(scene, memory, options);
       MutexLock lock(mutex_);
@@ -162,9 +162,10 @@ void Daemon::stop() {
   pipeline_.request_stop();
   sensors.clear();
   if (pipeline_.joinable()) pipeline_.join();
-  recorder_.reset();  // closes the file
   shadow_.reset();
   if (publisher_) publisher_->stop();  // before the desk, which it may still hand requests to
+  desk_.reset();
+  recorder_.reset();  // closes the file
 }
 
 }  // namespace gfp

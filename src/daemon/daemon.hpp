@@ -63,7 +63,7 @@ class Daemon {
   void ask(PeerRequest request, ControlDesk::Send send) { desk_->put(std::move(request), std::move(send)); }
 
   Publisher& publisher() { return *publisher_; }
-  Recorder* recorder() { return recorder_.get(); }  ///< nullptr: recording.mode is `off`.
+  Recorder& recorder() { return *recorder_; }
 
  private:
   Daemon(DaemonOptions options, DaemonParts parts);
@@ -82,6 +82,7 @@ class Daemon {
   v1::ControlReply answer_grasp(const v1::ControlRequest& request);
   v1::ControlReply answer_set_parameters(const v1::ControlRequest& request);
   v1::ControlReply answer_retype(const v1::ControlRequest& request) const;
+  v1::ControlReply answer_record(const v1::ControlRequest& request);
 
   static constexpr Nanoseconds kStuckAfter{20'000'000'000};
 

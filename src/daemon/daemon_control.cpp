@@ -1,4 +1,4 @@
-// What the daemon answers to control requests: fits, grasps that the robot reaches, parameters, control points by hand.
+// What the daemon answers to control requests: fits, grasps that the robot reaches, parameters, control points by hand, the recorder.
 #include <fmt/format.h>
 
 #include "daemon/daemon.hpp"
@@ -10,6 +10,14 @@ namespace gfp {
 namespace {
 
 using Reply = v1::ControlReply;
+
+const char* state_of(const Recorder::Status& status) {
+  using State = RecordingStatus::State;
+  if (status.mode == "off") return "off";
+  if (status.recording.state == State::kNoSpace) return "no_space";
+  if (status.recording.state == State::kFailing) return "failing";
+  return status.mode == "ring" && status.recording.state == State::kIdle ? "ring" : "recording";
+}
 
 Reply::Code code_of(ErrorCode code) {
   if (code == ErrorCode::kNotFound) return Reply::CODE_NOT_FOUND;
@@ -56,6 +64,7 @@ Reply Daemon::answer(const v1::ControlRequest& request) {
     return parameters_reply(options_, request.get_parameters().prefixes());
   }
   if (request.has_retype()) return answer_retype(request);
+  if (request.has_record()) return answer_record(request);
   return answer_set_parameters(request);
 }
 
@@ -132,6 +141,28 @@ Reply Daemon::answer_retype(const v1::ControlRequest& request) const {
   for (const PointType one : done->types) retyped.mutable_types()->push_back(one == PointType::kControl ? '\1' : '\0');
   for (const std::optional<PointType>& manual : done->manual) retyped.mutable_manual_types()->push_back(!manual ? '\0' : *manual == PointType::kRegular ? '\1' : '\2');
   retyped.mutable_manual_types()->resize(done->types.size(), '\0');  // nothing by hand: none is listed
+  return reply;
+}
+
+Reply Daemon::answer_record(const v1::ControlRequest& request) {
+  const v1::RecordRequest::Action asked = request.record().action();
+  if (!v1::RecordRequest::Action_IsValid(asked)) return refusal(request, Reply::CODE_INVALID, fmt::format("action = {}, expected 0 to 3", static_cast<int>(asked)));
+  static_assert(static_cast<int>(Recorder::Action::kTrigger) == static_cast<int>(v1::RecordRequest::ACTION_TRIGGER));
+  const auto status = recorder_->control(static_cast<Recorder::Action>(asked));
+  if (!status) return refusal(request, status.error().code == ErrorCode::kTimeout ? Reply::CODE_UNAVAILABLE : Reply::CODE_INVALID, status.error().what);
+  Reply reply;
+  v1::Recording& recording = *reply.mutable_recording();
+  {
+    MutexLock lock(mutex_);
+    recording.set_mode(options_.recording.mode);
+  }
+  recording.set_state(state_of(*status));
+  recording.set_file(status->recording.file.string());
+  recording.set_files(status->recording.files);
+  recording.set_messages(status->recording.messages);
+  recording.set_bytes(status->recording.bytes);
+  recording.set_lost_messages(status->recording.lost_messages);
+  recording.set_last_error(status->recording.last_error);
   return reply;
 }
 

@@ -173,7 +173,7 @@ void serve(gfp::Daemon& daemon, LiveLibrary& library, const Arguments& arguments
       reload(daemon, library, arguments);
       gfp::tell_service_manager("READY=1");
     }
-    if (signal == SIGUSR1 && daemon.recorder() != nullptr) daemon.recorder()->trigger();
+    if (signal == SIGUSR1) daemon.recorder().trigger();
     if (signal == SIGTERM || signal == SIGINT) return spdlog::info("stopping on signal {}", signal);
   }
 }

@@ -44,6 +44,48 @@ def lines(text):
     return [json.loads(line) for line in text.splitlines()]
 
 
+def check_recorder(folder, config):
+    """Over the control socket: what was off is started and stopped, a ring is triggered; each file is whole."""
+
+    def recorder(action, expected=0):
+        return json.loads(gfp("recorder", action, "--json", expected=expected) or "{}")
+
+    def with_daemon(mode, check):
+        recordings = folder / mode
+        daemon = subprocess.Popen([GFPD, "--config", config, "--set", f"recording.mode={mode}", "--set", f"recording.folder={recordings}", "--set", "recording.after_trigger_s=0.5"], stderr=subprocess.DEVNULL)
+        try:
+            gfp("sub", "/gfp/scene/", "--count", 1)
+            check(recordings)
+            daemon.send_signal(signal.SIGTERM)
+            assert daemon.wait(timeout=DEADLINE_S) == 0
+        finally:
+            daemon.kill()
+        files = sorted(recordings.glob("*"))
+        for file in files:
+            assert file.suffix == ".mcap" and lines(gfp("repair", file, "--json"))[0]["outcome"] == "sound", file
+        return files
+
+    def off(recordings):
+        assert recorder("status")["state"] == "off" and not recordings.exists()
+        recorder("trigger", expected=64)
+        for count in (1, 2):
+            assert recorder("start")["state"] == "recording"
+            wait_for("something in the file", lambda: recorder("status")["bytes"] > 0 and recorder("status")["file"].endswith(".active"))
+            stopped = recorder("stop")
+            assert (stopped["state"], stopped["mode"], stopped["files"], stopped["lost_messages"]) == ("off", "off", count, 0), stopped
+            assert pathlib.Path(stopped["file"]).is_file(), stopped
+        recorder("start")  # and what is open when the daemon ends is closed
+        wait_for("a third file", lambda: recorder("status")["file"].endswith(".active"))
+
+    def ring(recordings):
+        assert recorder("status")["state"] == "ring"
+        wait_for("a file of the ring", lambda: recorder("trigger")["messages"] > 0)
+        wait_for("its end", lambda: recorder("status")["state"] == "ring")
+
+    assert len(with_daemon("off", off)) == 3
+    assert len(with_daemon("ring", ring)) >= 1
+
+
 def main():
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
@@ -76,6 +118,8 @@ def main():
         for file in [first, *recordings.glob("*.mcap")]:
             assert lines(gfp("repair", file, "--json"))[0]["outcome"] == "sound", file
             assert lines(gfp("diff", file, file, "--json"))[0]["differences"] == []
+
+        check_recorder(folder, config)
 
         # The recording fits to the same objects every time, and gfp replay publishes every frame of it.
         fits = [folder / "a.jsonl", folder / "b.jsonl"]

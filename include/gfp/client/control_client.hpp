@@ -41,6 +41,14 @@ struct ReachableGrasp {
   Transform T_base_pregrasp_tcp = Transform::Identity();
 };
 
+/// The daemon's own recorder, as proto/gfp/v1/control.proto says it in `Recording`.
+struct RecorderState {
+  std::string mode, state, file;
+  std::uint64_t files = 0, messages = 0, bytes = 0, lost_messages = 0;
+  std::string last_error;
+};
+enum class RecorderAction { kStatus, kStart, kStop, kTrigger };
+
 /// Asks a gfpd (proto/gfp/v1/control.proto). One thread at a time. Errors of all calls: kTimeout (no answer in time, or the daemon
 /// is busy: ask again), kInvalidArgument and kNotFound (as the daemon says), kCorruptData (not an answer), kIo.
 class ControlClient {
@@ -62,6 +70,9 @@ class ControlClient {
 
   Result<std::map<std::string, std::string>> parameters(const std::vector<std::string>& prefixes = {});
   Result<std::map<std::string, std::string>> set_parameters(const std::map<std::string, std::string>& values);  ///< Those after the change.
+
+  /// Starts or stops the daemon's recorder, or makes a file of its ring. kInvalidArgument: a trigger where no ring is filled.
+  Result<RecorderState> recorder(RecorderAction action);
 
  private:
   struct Link;
