@@ -124,6 +124,7 @@ FittedModel model_contour(const ObjectView& view, const Placement& placement, co
     if (primitive.topology->types[i] == PointType::kControl) model.states[i] |= kVertexControl;
     if ((contour.vertices[i] - contour.rest[i]).norm() > kMovedM) model.states[i] |= kVertexMoved;
   }
+  contour.data.distance_m.resize(model.vertices.size(), 0);
   contour.data.readings.resize(model.vertices.size(), 0);  // no look at the image where no iteration was asked for
   model.sigma_m = vertex_sigma(view, placement, contour.data, model.states, contour.vertices, vertex_normals({contour.vertices, triangles}));
   const Eigen::VectorXd modes = Eigen::Map<const Eigen::VectorXd>(model.modes.data(), static_cast<Eigen::Index>(model.modes.size()));

@@ -17,6 +17,9 @@ inline double continuity(const Eigen::Vector3d& p, const Eigen::Vector3d& before
 /// Eq. 5, the mixed term: |p_(i-1)(s, r) - 2 p_i(s, r) + p_(i+1)(s, r)|^2, a second difference along the diagonal.
 inline double mixed_curvature(const Eigen::Vector3d& before, const Eigen::Vector3d& p, const Eigen::Vector3d& after) { return (before - 2 * p + after).squaredNorm(); }
 
+/// Eq. 6, of one point: the external energy and squared derivatives, added and subtracted; 0 is called equilibrium.
+inline double equilibrium(double external, double alpha, double squared_first, double beta, double squared_second) { return external + alpha * squared_first - beta * squared_second; }
+
 /// Eq. 7: M_new = M_old (1 + d / d_max).
 inline Eigen::Vector3d drag(const Eigen::Vector3d& p, double d, double d_max) { return p * (1 + d / d_max); }
 
