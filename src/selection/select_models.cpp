@@ -29,19 +29,53 @@ double log_evidence(const Candidate& candidate, const SelectionOptions& options)
          kFreedomPenalty * free_parameters(candidate.model);
 }
 
-ObjectEstimate select_one(const ObjectView& view, std::vector<Candidate> candidates, const SelectionOptions& options) {
+using PerCandidate = std::vector<std::vector<double>>;  // of each object
+
+/// How sure each object is of its candidates; what is none of them is left out.
+std::vector<double> beliefs(const std::vector<double>& evidences) {
+  const double best = *std::max_element(evidences.begin(), evidences.end());
+  std::vector<double> result;
+  double total = 0;
+  for (const double evidence : evidences) total += result.emplace_back(std::exp((evidence - best) / kTemperature));
+  for (double& belief : result) belief *= (1 - kNotAmongThem) / total;
+  return result;
+}
+
+/// Mean log odds, over the other objects and what they may be, of each candidate.
+PerCandidate context_of(const std::vector<std::vector<Candidate>>& candidates, const PerCandidate& evidences, const ContextOptions& options) {
+  const Context context(options);
+  PerCandidate odds;
+  for (const auto& of_object : candidates) odds.emplace_back(of_object.size(), 0.0);
+  if (candidates.size() < 2 || options.weight <= 0) return odds;
+  for (int round = 0; round < options.rounds; ++round) {
+    PerCandidate belief;
+    for (std::size_t i = 0; i < candidates.size(); ++i) {
+      std::vector<double> total = evidences[i];
+      for (std::size_t k = 0; k < total.size(); ++k) total[k] += odds[i][k];
+      belief.push_back(beliefs(total));
+    }
+    for (std::size_t i = 0; i < candidates.size(); ++i) {
+      for (std::size_t k = 0; k < candidates[i].size(); ++k) {
+        double sum = 0;
+        for (std::size_t j = 0; j < candidates.size(); ++j)
+          for (std::size_t l = 0; j != i && l < candidates[j].size(); ++l) sum += belief[j][l] * context.log_odds(candidates[i][k].model, candidates[j][l].model);
+        odds[i][k] = sum / static_cast<double>(candidates.size() - 1);
+      }
+    }
+  }
+  return odds;
+}
+
+ObjectEstimate select_one(const ObjectView& view, std::vector<Candidate> candidates, const std::vector<double>& evidences, const std::vector<double>& context) {
   ObjectEstimate estimate;
   estimate.id = view.id;
   estimate.segment = view.segment;
-  std::size_t best = 0;
-  std::vector<double> evidences;
-  for (const auto& candidate : candidates) {
-    evidences.push_back(log_evidence(candidate, options));
-    if (evidences.back() > evidences[best]) best = evidences.size() - 1;
-  }
+  std::vector<double> totals = evidences;
+  for (std::size_t k = 0; k < totals.size(); ++k) totals[k] += context[k];
+  const auto best = static_cast<std::size_t>(std::max_element(totals.begin(), totals.end()) - totals.begin());
   double total = 0;
   for (std::size_t k = 0; k < candidates.size(); ++k) {
-    const double odds = std::exp((evidences[k] - evidences[best]) / kTemperature);
+    const double odds = std::exp((totals[k] - totals[best]) / kTemperature);
     auto& of_class = estimate.class_probabilities[candidates[k].model.class_name];
     total += std::max(0.0, odds - of_class);
     of_class = std::max(of_class, odds);  // a class is as probable as its best placement
@@ -49,6 +83,7 @@ ObjectEstimate select_one(const ObjectView& view, std::vector<Candidate> candida
   for (auto& [name, probability] : estimate.class_probabilities) probability *= (1 - kNotAmongThem) / total;
   estimate.class_probabilities["unknown"] += kNotAmongThem;
   estimate.model = std::move(candidates[best].model);
+  estimate.model.evidence.context = context[best];
   return estimate;
 }
 
@@ -61,8 +96,14 @@ bool unknown_may_win(const std::vector<Candidate>& candidates, const SelectionOp
 
 std::vector<ObjectEstimate> select_models(const std::vector<ObjectView>& views, std::vector<std::vector<Candidate>> candidates,
                                           const SelectionOptions& options) {
+  PerCandidate evidences;
+  for (const auto& of_object : candidates) {
+    evidences.emplace_back();
+    for (const Candidate& candidate : of_object) evidences.back().push_back(log_evidence(candidate, options));
+  }
+  const PerCandidate context = context_of(candidates, evidences, options.context);
   std::vector<ObjectEstimate> estimates;
-  for (std::size_t i = 0; i < views.size(); ++i) estimates.push_back(select_one(views[i], std::move(candidates[i]), options));
+  for (std::size_t i = 0; i < views.size(); ++i) estimates.push_back(select_one(views[i], std::move(candidates[i]), evidences[i], context[i]));
   return estimates;
 }
 

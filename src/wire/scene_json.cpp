@@ -47,6 +47,7 @@ Json evidence_json(const FitEvidence& evidence) {
           {"below_support_mm", 1e3 * evidence.below_support_m},
           {"neighbour_overlap_mm", 1e3 * evidence.neighbour_overlap_m},
           {"mahalanobis", evidence.mahalanobis},
+          {"context", evidence.context},
           {"cost", evidence.cost}};
 }
 

@@ -52,12 +52,13 @@ void fill(const FitEvidence& evidence, v1::Evidence& message) {
   message.set_below_support_m(evidence.below_support_m);
   message.set_neighbour_overlap_m(evidence.neighbour_overlap_m);
   message.set_mahalanobis(evidence.mahalanobis);
+  message.set_context(evidence.context);
   message.set_cost(evidence.cost);
 }
 
 FitEvidence evidence_from(const v1::Evidence& message) {
   return {message.rms_m(),           message.fit_similarity(),      message.explained(),   message.free_space_violation(), message.silhouette_iou(),
-          message.below_support_m(), message.neighbour_overlap_m(), message.mahalanobis(), message.cost()};
+          message.below_support_m(), message.neighbour_overlap_m(), message.mahalanobis(), message.context(), message.cost()};
 }
 
 void fill_model(const FittedModel& model, VertexCoding coding, v1::SceneObject& message) {

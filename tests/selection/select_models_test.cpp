@@ -53,7 +53,7 @@ TEST(SelectModels, WhatDescriptorsSaidBreaksTies) { EXPECT_EQ(decide({of_class("
 TEST(SelectModels, UnknownWinsOnlyByAClearlyBetterFit) {
   EXPECT_EQ(decide({of_class("can", 0.45), of_no_class(0.35)}).model.class_name, "can");
   EXPECT_EQ(decide({of_class("can", 1.20), of_no_class(0.35)}).model.class_name, "unknown");
-  EXPECT_EQ(decide({of_class("can", 0.45), of_no_class(0.10)}, {.unknown_log_prior = 0}).model.class_name, "unknown");
+  EXPECT_EQ(decide({of_class("can", 0.45), of_no_class(0.10)}, SelectionOptions{.unknown_log_prior = 0, .context = {}}).model.class_name, "unknown");
 }
 
 // What is spared is what could not have won: of all fits without a class, none at the least cost beats these.
@@ -64,6 +64,62 @@ TEST(SelectModels, SparesUnknownOnlyWhereItCannotWin) {
     if (!unknown_may_win(candidates)) EXPECT_EQ(decide({candidates.front(), of_no_class(0.2)}).model.class_name, "can") << cost;
     else EXPECT_GT(cost, 0.3);
   }
+}
+
+/// Two objects: what the first is, decided beside a sure `neighbour`.
+ObjectEstimate beside(const std::string& neighbour, std::vector<Candidate> candidates, const ContextOptions& context = {}) {
+  SelectionOptions options;
+  options.context = context;
+  return select_models({ObjectView{}, ObjectView{}}, {std::move(candidates), {of_class(neighbour, 0.3)}}, options).front();
+}
+
+// P4: what else stands there decides between two that fit alike, and never against the fit.
+TEST(Context, TheSceneBreaksTies) {
+  const ContextOptions strong{.together = 3, .apart = -3, .groups = {"mug bowl plate", "ball toy_car"}};
+  const std::vector<Candidate> round{of_class("ball", 0.30), of_class("bowl", 0.30)};
+  EXPECT_EQ(beside("plate", round, strong).model.class_name, "bowl");
+  EXPECT_EQ(beside("toy_car", round, strong).model.class_name, "ball");
+  EXPECT_EQ(beside("plate", {of_class("ball", 0.30), of_class("bowl", 0.80)}, strong).model.class_name, "ball");
+  EXPECT_GT(beside("plate", round, strong).class_probabilities.at("bowl"), beside("plate", round, {}).class_probabilities.at("bowl"));
+}
+
+TEST(Context, SaysWhatItAdded) {
+  const ContextOptions context{.together = 2, .size_correlation = 0, .groups = {"mug plate"}};
+  EXPECT_NEAR(beside("plate", {of_class("mug", 0.3)}, context).model.evidence.context, 2 * 0.92, 1e-12) << "the neighbour is .92 sure";
+  EXPECT_EQ(beside("plate", {of_class("mug", 0.3)}, {.weight = 0}).model.evidence.context, 0);
+  EXPECT_EQ(decide({of_class("mug", 0.3)}).model.evidence.context, 0) << "alone";
+  EXPECT_EQ(beside("plate", {of_no_class(0.2)}, context).model.evidence.context, 0) << "of no class";
+  EXPECT_EQ(beside("gadget", {of_class("mug", 0.3)}, context).model.evidence.context, 0) << "nothing is known of gadgets";
+}
+
+/// A model whose three log sizes are `deviation` standard deviations of their mean above its class's.
+FittedModel sized(double deviation) {
+  FittedModel model = of_class("mug", 0.3).model;
+  auto primitive = std::make_shared<Primitive>();
+  primitive->log_size_covariance = 0.04 * Eigen::Matrix3d::Identity();  // of the mean: 0.2 / sqrt(3)
+  model.primitive = primitive;
+  model.size_m = Eigen::Vector3d::Constant(std::exp(deviation * 0.2 / std::sqrt(3.0)));
+  return model;
+}
+
+// Log ratio of the correlated to the independent normal density, as a table of normals has it.
+TEST(Context, RelativeSizesAreACorrelatedPair) {
+  const Context context({.together = 0, .apart = 0, .size_correlation = 0.5});
+  const auto log_density = [](double a, double b, double r) { return -0.5 * std::log(1 - r * r) - (a * a - 2 * r * a * b + b * b) / (2 * (1 - r * r)); };
+  for (const double a : {-2.0, 0.0, 1.5})
+    for (const double b : {-1.0, 0.5, 2.0}) EXPECT_NEAR(context.log_odds(sized(a), sized(b)), log_density(a, b, 0.5) - log_density(a, b, 0), 1e-9) << a << " " << b;
+  EXPECT_GT(context.log_odds(sized(2), sized(2)), 0) << "a set of large things";
+  EXPECT_LT(context.log_odds(sized(2), sized(-2)), 0);
+}
+
+// Two undecided things lift each other: neither is sure, both become surer.
+TEST(Context, UndecidedThingsDecideEachOther) {
+  SelectionOptions options;
+  options.context = {.together = 3, .apart = -3, .rounds = 10, .groups = {"mug bowl", "ball toy_car"}};
+  const std::vector<std::vector<Candidate>> both{{of_class("ball", 0.30), of_class("bowl", 0.302)}, {of_class("toy_car", 0.36), of_class("mug", 0.30)}};
+  const auto estimates = select_models({ObjectView{}, ObjectView{}}, both, options);
+  EXPECT_EQ(estimates[0].model.class_name, "bowl");
+  EXPECT_EQ(estimates[1].model.class_name, "mug");
 }
 
 }  // namespace

@@ -30,6 +30,7 @@ struct FitEvidence {
   double below_support_m = 0;       ///< Deepest vertex under the table.
   double neighbour_overlap_m = 0;   ///< Deepest reach into neighbours' footprints.
   double mahalanobis = 0;           ///< Of size and modes under the class prior.
+  double context = 0;               ///< Log odds that the rest of the scene adds to the class; what `selection` found.
   double cost = 0;                  ///< The number `selection` compares: negative log evidence per effective pixel.
 };
 
