@@ -147,7 +147,11 @@ void RecordingSeries::finish_file() {
   if (!writer_) return;
   const std::filesystem::path active = status_.file;
   Result<void> finished = writer_->finish(encoder_.registry());
-  if (!finished) finished = writer_->finish(encoder_.registry());  // a refusal may pass; else repair will do it
+  if (!finished) {  // a refusal may pass; else repair will do it
+    ++status_.write_errors;
+    status_.last_error = finished.error().what;
+    finished = writer_->finish(encoder_.registry());
+  }
   writer_.reset();
   status_.file.clear();
   status_.state = State::kIdle;

@@ -6,6 +6,7 @@
 #include <boost/beast.hpp>
 
 #include <fmt/format.h>
+#include <pthread.h>
 #include <unistd.h>
 
 #include <array>
@@ -234,6 +235,7 @@ class View::Server {
  private:
   /// What goes wrong in one handler (memory, a bug) costs its message, not the daemon.
   void run() {
+    pthread_setname_np(pthread_self(), "gfp-view");  // for top -H, and for who measures it
     while (!context_.stopped()) {
       try {
         context_.run();
