@@ -162,24 +162,25 @@ std::vector<Vector3d> vertex_normals(const TriangleMesh& mesh) {
 }
 
 VertexAdjacency vertex_adjacency(const TriangleMesh& mesh) {
-  std::vector<std::pair<std::int32_t, std::int32_t>> pairs;
-  pairs.reserve(6 * mesh.triangles.size());
-  for (const auto& t : mesh.triangles) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      pairs.emplace_back(t[k], t[(k + 1) % 3]);
-      pairs.emplace_back(t[(k + 1) % 3], t[k]);
-    }
-  }
-  std::sort(pairs.begin(), pairs.end());
-  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+  const std::size_t vertices = mesh.vertices.size();
+  // Every edge of a triangle, both ways, counting-sorted by where it begins; lists are short.
+  std::vector<std::int32_t> starts(vertices + 1, 0);
+  for (const Triangle& t : mesh.triangles)
+    for (const std::int32_t v : t) starts[static_cast<std::size_t>(v) + 1] += 2;
+  std::partial_sum(starts.begin(), starts.end(), starts.begin());
+  std::vector<std::int32_t> ends(static_cast<std::size_t>(starts.back())), next(starts.begin(), starts.end() - 1);
+  for (const Triangle& t : mesh.triangles)
+    for (std::size_t k = 0; k < 3; ++k)
+      for (const std::size_t other : {(k + 1) % 3, (k + 2) % 3}) ends[static_cast<std::size_t>(next[static_cast<std::size_t>(t[k])]++)] = t[other];
   VertexAdjacency adjacency;
-  adjacency.offsets.assign(mesh.vertices.size() + 1, 0);
-  adjacency.indices.reserve(pairs.size());
-  for (const auto& [from, to] : pairs) {
-    ++adjacency.offsets[static_cast<std::size_t>(from) + 1];
-    adjacency.indices.push_back(to);
+  adjacency.offsets.assign(vertices + 1, 0);
+  adjacency.indices.reserve(ends.size() / 2);
+  for (std::size_t v = 0; v < vertices; ++v) {
+    const auto first = ends.begin() + starts[v], last = ends.begin() + starts[v + 1];
+    std::sort(first, last);
+    adjacency.indices.insert(adjacency.indices.end(), first, std::unique(first, last));
+    adjacency.offsets[v + 1] = static_cast<std::int32_t>(adjacency.indices.size());
   }
-  std::partial_sum(adjacency.offsets.begin(), adjacency.offsets.end(), adjacency.offsets.begin());
   return adjacency;
 }
 

@@ -1,5 +1,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -106,37 +107,53 @@ class TriangleGrid {
     for (int axis = 0; axis < 3; ++axis)
       counts_[axis] = std::clamp(static_cast<int>(all.size()[axis] / cell_) + 1, 1, 64);
     for (int axis = 0; axis < 3; ++axis) steps_[axis] = std::max(all.size()[axis] / counts_[axis], 1e-12);
+    ranges_.reserve(boxes.size());
+    for (const Bounds& box : boxes) ranges_.push_back({cell_of(box.low), cell_of(box.high)});
     starts_.assign(static_cast<std::size_t>(counts_[0] * counts_[1] * counts_[2]) + 1, 0);
-    for (std::size_t t = 0; t < boxes.size(); ++t) for_cells(boxes[t], [&](std::size_t cell) { ++starts_[cell + 1]; });
+    for (const Range& range : ranges_) for_cells(range, [&](std::size_t cell) { ++starts_[cell + 1]; });
     for (std::size_t c = 1; c < starts_.size(); ++c) starts_[c] += starts_[c - 1];
     members_.resize(static_cast<std::size_t>(starts_.back()));
     auto next = starts_;
-    for (std::size_t t = 0; t < boxes.size(); ++t)
-      for_cells(boxes[t], [&](std::size_t cell) { members_[static_cast<std::size_t>(next[cell]++)] = static_cast<std::int32_t>(t); });
+    for (std::size_t t = 0; t < ranges_.size(); ++t)
+      for_cells(ranges_[t], [&](std::size_t cell) { members_[static_cast<std::size_t>(next[cell]++)] = static_cast<std::int32_t>(t); });
   }
 
   std::size_t cells() const { return starts_.size() - 1; }
   std::pair<const std::int32_t*, const std::int32_t*> members(std::size_t cell) const {
     return {members_.data() + starts_[cell], members_.data() + starts_[cell + 1]};
   }
-  std::size_t cell_of(const Vector3d& p) const { return index(coordinate(p, 0), coordinate(p, 1), coordinate(p, 2)); }
+
+  /// The first cell that the boxes of two triangles share, where they overlap: the cell of the overlap's low corner.
+  std::size_t first_shared(std::int32_t a, std::int32_t b) const {
+    const Cell &one = ranges_[static_cast<std::size_t>(a)].low, &other = ranges_[static_cast<std::size_t>(b)].low;
+    return index(std::max(one[0], other[0]), std::max(one[1], other[1]), std::max(one[2], other[2]));
+  }
 
  private:
-  int coordinate(const Vector3d& p, int axis) const {
-    return std::clamp(static_cast<int>((p[axis] - origin_[axis]) / steps_[axis]), 0, counts_[axis] - 1);
+  using Cell = std::array<int, 3>;
+  struct Range {
+    Cell low, high;
+  };
+
+  Cell cell_of(const Vector3d& p) const {
+    Cell cell;
+    for (int axis = 0; axis < 3; ++axis)
+      cell[static_cast<std::size_t>(axis)] = std::clamp(static_cast<int>((p[axis] - origin_[axis]) / steps_[axis]), 0, counts_[axis] - 1);
+    return cell;
   }
   std::size_t index(int x, int y, int z) const { return static_cast<std::size_t>((z * counts_[1] + y) * counts_[0] + x); }
   template <class Visit>
-  void for_cells(const Bounds& box, Visit&& visit) const {
-    for (int z = coordinate(box.low, 2); z <= coordinate(box.high, 2); ++z)
-      for (int y = coordinate(box.low, 1); y <= coordinate(box.high, 1); ++y)
-        for (int x = coordinate(box.low, 0); x <= coordinate(box.high, 0); ++x) visit(index(x, y, z));
+  void for_cells(const Range& range, Visit&& visit) const {
+    for (int z = range.low[2]; z <= range.high[2]; ++z)
+      for (int y = range.low[1]; y <= range.high[1]; ++y)
+        for (int x = range.low[0]; x <= range.high[0]; ++x) visit(index(x, y, z));
   }
 
   Vector3d origin_;
   double cell_;
   int counts_[3];
   double steps_[3];
+  std::vector<Range> ranges_;  ///< Of cells, per triangle.
   std::vector<std::int32_t> starts_, members_;
 };
 
@@ -157,9 +174,8 @@ void visit_crossings(const TriangleMesh& mesh, Found&& found) {
     for (auto a = first; a != last; ++a) {
       for (auto b = a + 1; b != last; ++b) {
         const Bounds &box_a = boxes[static_cast<std::size_t>(*a)], &box_b = boxes[static_cast<std::size_t>(*b)];
-        const Vector3d low = box_a.low.cwiseMax(box_b.low), high = box_a.high.cwiseMin(box_b.high);
-        if ((low.array() > high.array()).any()) continue;
-        if (grid.cell_of(low) != cell) continue;  // a pair that shares several cells is looked at once
+        if ((box_a.low.array() > box_b.high.array()).any() || (box_b.low.array() > box_a.high.array()).any()) continue;
+        if (grid.first_shared(*a, *b) != cell) continue;  // a pair that shares several cells is looked at once
         if (!cross_each_other(mesh, mesh.triangles[static_cast<std::size_t>(*a)], mesh.triangles[static_cast<std::size_t>(*b)], normals[static_cast<std::size_t>(*a)])) continue;
         if (!found(*a, *b)) return;
       }
