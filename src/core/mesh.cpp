@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "gfp/core/elementary.hpp"
 #include "gfp/core/union_find.hpp"
 
 namespace gfp {
@@ -151,7 +152,7 @@ std::vector<Vector3d> vertex_normals(const TriangleMesh& mesh) {
       const auto i = static_cast<std::size_t>(t[k]);
       const Vector3d a = mesh.vertices[static_cast<std::size_t>(t[(k + 1) % 3])] - mesh.vertices[i];
       const Vector3d b = mesh.vertices[static_cast<std::size_t>(t[(k + 2) % 3])] - mesh.vertices[i];
-      normals[i] += std::atan2(a.cross(b).norm(), a.dot(b)) * faces[f];
+      normals[i] += fast_angle(a.cross(b).norm(), a.dot(b)) * faces[f];
     }
   }
   for (auto& n : normals) {

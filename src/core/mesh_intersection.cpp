@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "gfp/core/mesh.hpp"
@@ -157,6 +158,26 @@ class TriangleGrid {
   std::vector<std::int32_t> starts_, members_;
 };
 
+/// A box in single precision that holds the true one: what does not overlap does not touch.
+struct CoarseBox {
+  using Lanes = float __attribute__((vector_size(16)));
+  Lanes low, high;
+
+  explicit CoarseBox(const Bounds& box) {
+    constexpr float kInfinity = std::numeric_limits<float>::infinity();
+    for (int axis = 0; axis < 3; ++axis) {
+      low[axis] = std::nextafter(static_cast<float>(box.low[axis]), -kInfinity);
+      high[axis] = std::nextafter(static_cast<float>(box.high[axis]), kInfinity);
+    }
+    low[3] = high[3] = 0;
+  }
+  bool overlaps(const CoarseBox& other) const {
+    using Mask = std::int64_t __attribute__((vector_size(16)));
+    const auto apart = (Mask)((low > other.high) | (other.low > high));
+    return (apart[0] | apart[1]) == 0;
+  }
+};
+
 /// Calls `found(a, b)` for every pair of triangles that cross, until it returns false.
 template <class Found>
 void visit_crossings(const TriangleMesh& mesh, Found&& found) {
@@ -169,12 +190,12 @@ void visit_crossings(const TriangleMesh& mesh, Found&& found) {
   }
   const std::vector<Vector3d> normals = plane_normals(mesh);
   const TriangleGrid grid(boxes, bounds(mesh.vertices), std::max(mean_side, 1e-9));
+  const std::vector<CoarseBox> coarse(boxes.begin(), boxes.end());
   for (std::size_t cell = 0; cell < grid.cells(); ++cell) {
     const auto [first, last] = grid.members(cell);
     for (auto a = first; a != last; ++a) {
       for (auto b = a + 1; b != last; ++b) {
-        const Bounds &box_a = boxes[static_cast<std::size_t>(*a)], &box_b = boxes[static_cast<std::size_t>(*b)];
-        if ((box_a.low.array() > box_b.high.array()).any() || (box_b.low.array() > box_a.high.array()).any()) continue;
+        if (!coarse[static_cast<std::size_t>(*a)].overlaps(coarse[static_cast<std::size_t>(*b)])) continue;
         if (grid.first_shared(*a, *b) != cell) continue;  // a pair that shares several cells is looked at once
         if (!cross_each_other(mesh, mesh.triangles[static_cast<std::size_t>(*a)], mesh.triangles[static_cast<std::size_t>(*b)], normals[static_cast<std::size_t>(*a)])) continue;
         if (!found(*a, *b)) return;

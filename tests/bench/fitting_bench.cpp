@@ -9,6 +9,7 @@
 #include "app/builtin_library.hpp"
 #include "gfp/core/random.hpp"
 #include "gfp/evaluation/surface_samples.hpp"
+#include "gfp/modelling/evaluate_fit.hpp"
 #include "gfp/modelling/model_contour.hpp"
 #include "gfp/modelling/model_contour_paper.hpp"
 #include "gfp/modelling/recover_superquadric.hpp"
@@ -106,6 +107,16 @@ void BM_ContourRobust(benchmark::State& state) {
   report(state, model);
 }
 
+/// The part of BM_ContourRobust that judges the result and moves nothing: every method pays it.
+void BM_EvaluateFit(benchmark::State& state) {
+  const Seen& s = seen(state.range(0));
+  const FittedModel model = model_contour(s.view, s.placement);
+  const std::vector<Vector3d> vertices = model.vertices_camera();
+  std::vector<std::uint8_t> states;
+  on_one_core(state, [&] { benchmark::DoNotOptimize(evaluate_fit(s.view, vertices, model.topology->triangles, states)); });
+  report(state, model);
+}
+
 /// 21 explicit steps, as in the paper's case study; a settled contour stops before.
 template <ContourDirections directions, bool kd_tree>
 void BM_ContourPaper(benchmark::State& state) {
@@ -150,6 +161,7 @@ void BM_Superquadric(benchmark::State& state) {
 BENCHMARK(BM_Align<&align_icp>)->Name("BM_AlignOurs") GFP_BOTH_SIZES;
 BENCHMARK(BM_Align<&align_icp_pcl>)->Name("BM_AlignPclIcp") GFP_BOTH_SIZES;
 BENCHMARK(BM_ContourRobust) GFP_BOTH_SIZES;
+BENCHMARK(BM_EvaluateFit) GFP_BOTH_SIZES;
 BENCHMARK(BM_ContourPaper<ContourDirections::kNormal, false>)->Name("BM_ContourPaper") GFP_BOTH_SIZES;
 BENCHMARK(BM_ContourPaper<ContourDirections::kNormal, true>)->Name("BM_ContourPaperKdTree") GFP_BOTH_SIZES;
 BENCHMARK(BM_ContourPaper<ContourDirections::kGrid26, true>)->Name("BM_ContourPaper26KdTree") GFP_BOTH_SIZES;

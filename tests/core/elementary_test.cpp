@@ -38,5 +38,20 @@ TEST(Elementary, ExponentialAgreesWithTheCLibrary) {
   EXPECT_EQ(fast_exp(1e300), fast_exp(709));
 }
 
+TEST(Elementary, AngleAgreesWithTheCLibrary) {
+  Random random(3);
+  double worst = 0;
+  for (int k = 0; k < 200'000; ++k) {
+    const double sine = std::abs(random.normal()), cosine = random.normal(), length = std::exp(random.uniform(-30, 30));
+    worst = std::max(worst, std::abs(fast_angle(length * sine, length * cosine) - std::atan2(sine, cosine)));
+  }
+  EXPECT_LT(worst, 3e-8);
+  EXPECT_EQ(fast_angle(0, 0), 0);
+  EXPECT_EQ(fast_angle(0, 2), 0);
+  EXPECT_DOUBLE_EQ(fast_angle(0, -1), 3.141592653589793);
+  EXPECT_DOUBLE_EQ(fast_angle(4, 0), 3.141592653589793 / 2);
+  EXPECT_DOUBLE_EQ(fast_angle(1, 1), 3.141592653589793 / 4);
+}
+
 }  // namespace
 }  // namespace gfp
