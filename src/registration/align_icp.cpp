@@ -26,6 +26,7 @@ class PointCells {
     // About two points in a cell that the surface passes through.
     const double surface = 2 * (size.x() * size.y() + size.y() * size.z() + size.z() * size.x());
     cell_m_ = std::max({1e-9, std::sqrt(2 * surface / static_cast<double>(points.size())), size.maxCoeff() / 100});
+    cells_per_m_ = 1 / cell_m_;
     low_ = box.low;
     for (int axis = 0; axis < 3; ++axis) cells_[static_cast<std::size_t>(axis)] = static_cast<int>(size[axis] / cell_m_) + 1;
     start_.assign(static_cast<std::size_t>(cells_[0]) * static_cast<std::size_t>(cells_[1]) * static_cast<std::size_t>(cells_[2]) + 1, 0);
@@ -72,7 +73,7 @@ class PointCells {
 
  private:
   int along(int axis, double coordinate) const {
-    return static_cast<int>(std::clamp((coordinate - low_[axis]) / cell_m_, 0.0, static_cast<double>(cells_[static_cast<std::size_t>(axis)] - 1)));
+    return static_cast<int>(std::clamp((coordinate - low_[axis]) * cells_per_m_, 0.0, static_cast<double>(cells_[static_cast<std::size_t>(axis)] - 1)));
   }
   std::size_t row(int y, int z) const { return (static_cast<std::size_t>(z) * static_cast<std::size_t>(cells_[1]) + static_cast<std::size_t>(y)) * static_cast<std::size_t>(cells_[0]); }
   /// From a coordinate to the slab of cells.
@@ -84,7 +85,7 @@ class PointCells {
   static constexpr double kLook = 0.3;  ///< Cells beyond the guess.
 
   Vector3d low_;
-  double cell_m_ = 1;
+  double cell_m_ = 1, cells_per_m_ = 1;
   std::array<int, 3> cells_{1, 1, 1};
   std::vector<std::int32_t> start_;
   std::vector<Vector3d> points_;
