@@ -22,6 +22,8 @@ Json method_json(const MethodResult& m) {
   const FitMetrics& f = m.metrics;
   return {{"class", m.class_name},
           {"class_correct", number(m.class_correct)},
+          {"class_probability", m.class_probability},
+          {"cost", m.cost},
           {"iou_filled", f.iou_filled},
           {"iou_material", f.iou_material},
           {"volume_error", number(f.volume_error)},
@@ -65,6 +67,7 @@ Json summary_json(const MethodSummary& s) {
           {"sigma_coverage_observed", number(s.sigma_coverage_observed)},
           {"sigma_coverage_inferred", number(s.sigma_coverage_inferred)},
           {"class_accuracy", number(s.class_accuracy)},
+          {"class_probability_mean", number(s.class_probability_mean)},
           {"yaw_error_deg_median", number(s.yaw_error_deg_median)},
           {"grasp_success_1", number(s.grasp_success_1)},
           {"grasp_success_5", number(s.grasp_success_5)},

@@ -16,6 +16,7 @@ namespace {
 
 struct Fit {
   FittedModel model;
+  double class_probability = 0;
   double cpu_ms = 0;
 };
 
@@ -29,7 +30,9 @@ Result<Fit> fit_one(const ObjectView& view, const PrimitiveLibrary& library, con
       return;
     }
     fit->cpu_ms = thread_cpu_ms() - begin;
-    if (*estimate) fit->model = std::move((*estimate)->model);
+    if (!*estimate) return;
+    fit->class_probability = (*estimate)->class_probabilities[(*estimate)->model.class_name];
+    fit->model = std::move((*estimate)->model);
   });
   return fit;
 }
@@ -70,6 +73,8 @@ class CaseRunner {
     result.method = method;
     result.metrics = measure_fit(shown.truth, fit.model, observation.points_camera);
     result.class_name = fit.model.class_name;
+    result.class_probability = fit.class_probability;
+    result.cost = fit.model.evidence.cost;
     if (const PrimitivePtr known = library_.find(class_name)) result.class_correct = fit.model.class_name == known->class_name;
     result.cpu_ms = fit.cpu_ms;
     if (options_.grasps) {

@@ -32,7 +32,7 @@ std::optional<double> share(const SigmaCoverage& pooled) {
 /// The columns of a summary, as they are collected.
 struct Columns {
   std::vector<double> iou_filled, iou_material, volume_error, chamfer, hidden, observed, fscore, similarity, gap, yaw, ms;
-  std::vector<double> closed, intersecting, correct, grasp_1, grasp_5;
+  std::vector<double> closed, intersecting, correct, class_probability, grasp_1, grasp_5;
   SigmaCoverage sigma_observed, sigma_inferred;
 };
 
@@ -53,7 +53,10 @@ void add(const MethodResult& fit, bool missed, Columns& columns) {
   columns.similarity.push_back(m.fit_similarity);
   columns.gap.push_back(m.fit_similarity_true - m.fit_similarity);
   if (m.yaw_error_rad) columns.yaw.push_back(kDegrees * *m.yaw_error_rad);
-  if (fit.class_correct) columns.correct.push_back(*fit.class_correct ? 1 : 0);
+  if (fit.class_correct) {
+    columns.correct.push_back(*fit.class_correct ? 1 : 0);
+    columns.class_probability.push_back(fit.class_probability);
+  }
   if (fit.grasp_success_1) columns.grasp_1.push_back(*fit.grasp_success_1 ? 1 : 0);
   if (fit.grasp_success_5) columns.grasp_5.push_back(*fit.grasp_success_5 ? 1 : 0);
   if (missed) return;  // no fit, no mesh
@@ -90,6 +93,7 @@ MethodSummary summarise(const std::vector<CaseResult>& results, std::size_t meth
   summary.sigma_coverage_observed = share(columns.sigma_observed);
   summary.sigma_coverage_inferred = share(columns.sigma_inferred);
   summary.class_accuracy = mean(columns.correct);
+  summary.class_probability_mean = mean(columns.class_probability);
   summary.yaw_error_deg_median = quantile(columns.yaw, 0.5);
   summary.grasp_success_1 = mean(columns.grasp_1);
   summary.grasp_success_5 = mean(columns.grasp_5);

@@ -20,6 +20,7 @@ CaseResult result_of(const std::string& class_name, double iou, double chamfer_m
   method.metrics.closed = true;
   method.metrics.sigma_observed = {6, 10};
   method.class_correct = true;
+  method.class_probability = 0.9;
   method.cpu_ms = 10;
   result.methods.push_back(method);
   return result;
@@ -45,6 +46,7 @@ TEST(Summarise, AMissIsTheWorstFitThereIs) {
   EXPECT_EQ(s.closed_rate, 1.0);
   EXPECT_EQ(s.ms_median, 10.0);
   EXPECT_NEAR(s.class_accuracy.value(), 2.0 / 3, 1e-12);
+  EXPECT_NEAR(s.class_probability_mean.value(), 0.6, 1e-12) << "nothing is said of what is missed";
   EXPECT_EQ(s.sigma_coverage_observed, 0.6);
   EXPECT_FALSE(s.yaw_error_deg_median.has_value());
 }

@@ -29,6 +29,8 @@ struct MethodResult {
   FitMetrics metrics;
   std::string class_name;             ///< The fit's.
   std::optional<bool> class_correct;  ///< Empty where the library knows no such class.
+  double class_probability = 0;       ///< That the fit's class is the right one, as the fit says.
+  double cost = 0;                    ///< FitEvidence::cost.
   double cpu_ms = 0;                  ///< Of the fit, in its thread: recognition to selection.
   std::optional<bool> grasp_success_1, grasp_success_5;  ///< The best grasp, any of the best five, holds the true object.
 };

@@ -21,6 +21,7 @@ struct MethodSummary {
   std::optional<double> fit_similarity_median, fit_similarity_gap_median;  ///< Gap: the true mesh's own score less the fit's.
   std::optional<double> sigma_coverage_observed, sigma_coverage_inferred;  ///< Pooled over all vertices.
   std::optional<double> class_accuracy;
+  std::optional<double> class_probability_mean;    ///< Of the same cases, as the fits say: calibrated where it is the accuracy.
   std::optional<double> yaw_error_deg_median;
   std::optional<double> grasp_success_1, grasp_success_5;
   std::optional<double> ms_median, ms_p99;         ///< CPU time of a fit.
