@@ -37,12 +37,15 @@ TEST(SelectModels, TheBetterFitWinsAndTheProbabilitiesSumToOne) {
 
 // Nothing is certain: even a single candidate may be none of the truth.
 TEST(SelectModels, ProbabilitiesAreNoSurerThanTheyAreRight) {
-  EXPECT_NEAR(decide({of_class("mug", 0.3)}).class_probabilities.at("mug"), 0.92, 1e-12);
-  EXPECT_NEAR(decide({of_class("mug", 0.3)}).class_probabilities.at("unknown"), 0.08, 1e-12);
+  const auto known = [](double cost) { return 0.95 * (0.15 + 0.85 / (1 + std::pow(cost / 0.65, 3))); };
+  for (const double cost : {0.1, 0.3, 0.65, 1.4}) {
+    EXPECT_NEAR(decide({of_class("mug", cost)}).class_probabilities.at("mug"), known(cost), 1e-12) << cost;
+    EXPECT_NEAR(decide({of_class("mug", cost)}).class_probabilities.at("unknown"), 1 - known(cost), 1e-12) << cost;
+  }
   const auto even = decide({of_class("mug", 0.3), of_class("cup", 0.3)}).class_probabilities, worse = decide({of_class("mug", 0.3), of_class("cup", 0.4)}).class_probabilities;
   EXPECT_NEAR(even.at("mug"), even.at("cup"), 1e-12);
   EXPECT_GT(worse.at("mug"), even.at("mug"));
-  EXPECT_NEAR(worse.at("cup") / worse.at("mug"), std::exp(-0.1 * 60 / 3.0), 1e-9);  // 60 readings count, log odds are divided by 3
+  EXPECT_NEAR(worse.at("cup") / worse.at("mug"), std::exp(-0.1 * 60 / 3.0) * known(0.4) / known(0.3), 1e-9);  // 60 readings count, log odds are divided by 3
 }
 
 TEST(SelectModels, AnUnlikelyShapeOfAClassPaysForIt) { EXPECT_EQ(decide({of_class("jar", 0.30, 8), of_class("can", 0.35, 1)}).model.class_name, "can"); }
@@ -85,7 +88,8 @@ TEST(Context, TheSceneBreaksTies) {
 
 TEST(Context, SaysWhatItAdded) {
   const ContextOptions context{.together = 2, .size_correlation = 0, .groups = {"mug plate"}};
-  EXPECT_NEAR(beside("plate", {of_class("mug", 0.3)}, context).model.evidence.context, 2 * 0.92, 1e-12) << "the neighbour is .92 sure";
+  const double sure = decide({of_class("plate", 0.3)}).class_probabilities.at("plate");
+  EXPECT_NEAR(beside("plate", {of_class("mug", 0.3)}, context).model.evidence.context, 2 * sure, 1e-12) << "the neighbour is no surer than that";
   EXPECT_EQ(beside("plate", {of_class("mug", 0.3)}, {.weight = 0}).model.evidence.context, 0);
   EXPECT_EQ(decide({of_class("mug", 0.3)}).model.evidence.context, 0) << "alone";
   EXPECT_EQ(beside("plate", {of_no_class(0.2)}, context).model.evidence.context, 0) << "of no class";

@@ -30,7 +30,8 @@ bool unknown_may_win(const std::vector<Candidate>& candidates, const SelectionOp
 
 /// Which of its candidates each object is, decided jointly: every object weighs its candidates by how they go with what the others probably
 /// are (mean field). `candidates[i]` belongs to `views[i]` and is not empty. Class probabilities are
-/// calibrated: of what is .9 sure, nine of ten are right; `unknown` also holds the chance that none of the candidates is.
+/// calibrated: of what is .9 sure, nine of ten are right; `unknown` also holds the chance that none of the candidates is, which grows with what
+/// the fit costs. The model is the best one even where `unknown` is the likeliest: its shape is the best there is.
 std::vector<ObjectEstimate> select_models(const std::vector<ObjectView>& views, std::vector<std::vector<Candidate>> candidates,
                                           const SelectionOptions& options = {});
 
