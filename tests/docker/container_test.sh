@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Builds docker/Dockerfile with buildah and runs it with podman, as root, on a base that debootstrap makes; then a subscriber on this
-# host, outside the container, must get objects with closed meshes from the demo inside it.
+# host, outside the container, must get objects with closed meshes from the demo inside it, and the page of the view.
 #   container_test.sh GFP PYTHON3     exit code 77: skipped, with the reason
 # Kept between runs in $GFP_CONTAINER_DIR (default ~/.cache/gfp/container): the base and the layers. The host's ccache serves the build.
 set -euo pipefail
@@ -22,9 +22,11 @@ if ! podman "${store[@]}" image exists "$base"; then
       --exclude='./var/cache/apt/*' --exclude='./var/lib/apt/lists/*' -c . | podman "${store[@]}" import - "$base"
 fi
 
+# npm gets this host's certificates: it may be behind a proxy.
+authorities=/etc/ssl/certs/ca-certificates.crt
 build() {
   buildah "${store[@]}" bud --layers --format docker --isolation chroot --network host --pull-never --build-arg BASE="$base" \
-    -v "$ccache:/root/.cache/ccache" --target "$1" -t "localhost/$2" -f docker/Dockerfile .
+    -v "$authorities:/run/authorities.crt:ro" --build-arg NODE_EXTRA_CA_CERTS=/run/authorities.crt -v "$ccache:/root/.cache/ccache" --target "$1" -t "localhost/$2" -f docker/Dockerfile .
 }
 build service gfp:test
 build subscriber gfp-subscriber:test
@@ -41,11 +43,13 @@ limits=(--ulimit nofile=1024:1024 --ulimit nproc=1000:1000 --cap-drop ALL --read
 name=gfp-test-$$
 end() { "${run[@]}" rm -f "$name" >/dev/null 2>&1 || true; rm -rf "$sockets"; }
 trap end EXIT
-"${run[@]}" run -d --name "$name" --network none "${limits[@]}" localhost/gfp:test >/dev/null
+port=$("$python3" -c 'import socket; s = socket.socket(); s.bind(("127.0.0.1", 0)); print(s.getsockname()[1])')
+"${run[@]}" run -d --name "$name" --network host "${limits[@]}" localhost/gfp:test --config /etc/gfp/demo.yaml --set "view.port=$port" >/dev/null
 
 export RUNTIME_DIRECTORY="$sockets"
 PYTHONPATH=clients/python PYTHONDONTWRITEBYTECODE=1 "$python3" tests/docker/subscribe.py || { "${run[@]}" logs "$name"; fail "no objects came out of the container"; }
 "$gfp" sub /gfp/scene/ --count 3 --seconds 60 --json >/dev/null || fail "gfp sub outside the container saw nothing"
+"$python3" tests/docker/page.py "http://127.0.0.1:$port/" || fail "the container serves no page"
 [ "$("${run[@]}" exec "$name" id -u)" = 10001 ] || fail "the service runs as another user than 10001"
 "${run[@]}" exec "$name" gfp echo /gfp/status/gfpd/ --count 1 --seconds 5 >/dev/null || fail "the health check fails while the daemon publishes"
 "${run[@]}" run --rm --network none "${limits[@]}" --entrypoint timeout localhost/gfp-subscriber:test 20 python3 -u /opt/gfp/gfp_client.py >"$sockets/example.log" || true
