@@ -51,7 +51,7 @@ double share_inside(const Track& track, const ObjectView& view, const Transform&
   constexpr double kGrowth = 0.1, kMarginM = 0.01;
   constexpr int kStep = 3;
   if (!track.last().object) return 0;
-  const Transform T_object_camera = (track.last().T_world_sensor * track.fit.T_camera_object).inverse() * T_world_sensor;
+  const Transform T_object_camera = (track.T_world_fit * track.fit.T_camera_object).inverse() * T_world_sensor;
   const Eigen::Vector3d size = (1 + kGrowth) * track.fit.scale + Eigen::Vector3d::Constant(2 * kMarginM);
   int all = 0, inside = 0;
   for (int j = 0; j < view.tile.height(); j += kStep) {
@@ -97,7 +97,7 @@ void recall(ObjectView& view, const Track& track, const Frame& frame, const Asso
   view.field = sightings(track.field, frame.sensor, frame.T_world_sensor, view, options);
   if (!track.last().object) return;
   view.warm_start = track.fit;
-  view.warm_start->T_camera_object = frame.T_world_sensor.inverse() * track.last().T_world_sensor * track.fit.T_camera_object;
+  view.warm_start->T_camera_object = frame.T_world_sensor.inverse() * track.T_world_fit * track.fit.T_camera_object;
   const SensorTrack* before = from_same_standpoint(track, frame);
   view.unchanged = before && before->fitted_view && same_sightings(view.field, before->fitted_view->field) && same_within_noise(view, *before->fitted_view, options);
 }

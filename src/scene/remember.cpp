@@ -74,6 +74,7 @@ Track next_track(const ObjectView& view, const Scene& scene, const Track* before
     track.fit = {};
   } else {
     track.fit = warm_start_of(*object, track.fit);
+    track.T_world_fit = scene.T_world_sensor;
     const bool still = object->status == ObjectStatus::kUnchanged && last && last->fitted_view;
     now.fitted_view = still ? last->fitted_view : std::make_shared<const ObjectView>(view);
     now.object = std::make_shared<const SceneObject>(*object);

@@ -104,6 +104,27 @@ TEST(Remember, AnotherSensorsSilenceSaysNothing) {
   EXPECT_EQ(remember(elsewhere, {}, {}, memory).tracks[0].last().missed_frames, 0);
 }
 
+// The left sensor fitted last, then loses sight for good: the right one still knows where that fit was.
+TEST(Remember, AFitOutlivesTheSensorThatMadeIt) {
+  const Seen both = see(kTwo, {});
+  Scene right = both.scene, left = both.scene;
+  right.sensor = "right";
+  left.sensor = "left";
+  left.T_world_sensor.translation() = Eigen::Vector3d(0.01, 0, 0);
+  SceneMemory memory = remember(right, {}, both.views, {});
+  memory = remember(left, {}, both.views, memory);
+  Scene blind;
+  blind.sensor = "left";
+  for (int frame = 0; frame < 3; ++frame) memory = remember(blind, {}, {}, memory, {.max_missed_frames = 2});
+  ASSERT_EQ(memory.tracks.size(), 2U);
+  EXPECT_EQ(memory.tracks[0].last().sensor, "right");
+  test::BlockScene now = test::block_scene(kTwo, 0);
+  now.frame.sensor = "right";
+  const auto views = associate(now.segments, now.cloud, now.normals, now.frame, memory);
+  ASSERT_TRUE(views[0].warm_start.has_value());
+  EXPECT_TRUE(views[0].warm_start->T_camera_object.isApprox(left.T_world_sensor * left.objects[0].model.T_camera_object, 1e-12));
+}
+
 TEST(Remember, WhatHadNoFitIsSeenButNotWarm) {
   Seen seen = see(kTwo, {});
   seen.scene.objects.erase(seen.scene.objects.begin());

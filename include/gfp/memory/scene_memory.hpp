@@ -34,7 +34,8 @@ struct Track {
   std::uint64_t id = 0;
   Eigen::Vector3d centre_world = Eigen::Vector3d::Zero();   ///< Of the object's seen points.
   double height_m = 0;                                      ///< As in its last view.
-  WarmStart fit;                                            ///< The last one, in the camera frame of sensors.front().
+  WarmStart fit;                                            ///< The last one, of whichever sensor...
+  Transform T_world_fit = Transform::Identity();            ///< ... whose camera frame it is in.
   std::vector<SensorTrack> sensors;                         ///< Never empty; who saw it last comes first.
   ObjectField field;
 
