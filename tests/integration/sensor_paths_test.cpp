@@ -9,7 +9,6 @@
 
 #include "app/builtin_library.hpp"
 #include "app/input.hpp"
-#include "gfp/evaluation/metrics.hpp"
 #include "gfp/pipeline/process_frame.hpp"
 #include "openni2/openni2_source.hpp"
 #ifdef GFP_HAS_BUMBLEBEE
@@ -20,6 +19,7 @@
 #include "support/gige_lock.hpp"
 #endif
 #include "support/fakenect_folder.hpp"
+#include "support/true_shapes.hpp"
 #include "synthetic/synthetic_source.hpp"
 
 namespace gfp {
@@ -63,12 +63,8 @@ class SensorPaths : public ::testing::Test {
     SyntheticSource source(scene_options());
     frame_ = new Frame(first_frame(source));
     truth_ = new FrameTruth(source.truth(0));
-    shapes_ = new std::vector<std::shared_ptr<const TruthShape>>;
-    for (const PlacedMesh& object : source.scene().objects) {
-      auto shape = make_truth_shape(object.name, object.class_name, object.mesh);
-      ASSERT_TRUE(shape) << shape.error().what;
-      shapes_->push_back(std::make_shared<const TruthShape>(std::move(*shape)));
-    }
+    shapes_ = new test::TrueShapes(test::true_shapes(source.scene()));
+    ASSERT_FALSE(shapes_->empty());
     direct_ = new std::vector<Seen>(compare(scene_of(*frame_)));
   }
   static void TearDownTestSuite() {
@@ -94,8 +90,7 @@ class SensorPaths : public ::testing::Test {
         seen.push_back({"missing", 0});
         continue;
       }
-      const TruthView view{(*shapes_)[i], truth_->T_camera_object[i], std::vector<std::uint8_t>((*shapes_)[i]->samples.points.size(), 1)};
-      seen.push_back({nearest->model.class_name, measure_fit(view, nearest->model, {}).iou_filled});
+      seen.push_back({nearest->model.class_name, test::filled_iou((*shapes_)[i], truth_->T_camera_object[i], nearest->model)});
     }
     return seen;
   }
@@ -133,7 +128,7 @@ class SensorPaths : public ::testing::Test {
 
   static inline const Frame* frame_ = nullptr;
   static inline const FrameTruth* truth_ = nullptr;
-  static inline std::vector<std::shared_ptr<const TruthShape>>* shapes_ = nullptr;
+  static inline test::TrueShapes* shapes_ = nullptr;
   static inline const std::vector<Seen>* direct_ = nullptr;
 };
 

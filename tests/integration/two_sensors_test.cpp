@@ -2,14 +2,13 @@
 #include <gtest/gtest.h>
 
 #include <cstdio>
-#include <memory>
 #include <numbers>
 #include <string>
 #include <vector>
 
 #include "app/builtin_library.hpp"
-#include "gfp/evaluation/metrics.hpp"
 #include "gfp/pipeline/process_frame.hpp"
+#include "support/true_shapes.hpp"
 #include "synthetic/synthetic_source.hpp"
 
 namespace gfp {
@@ -79,32 +78,23 @@ TEST(TwoSensors, OneGoesOnAlone) {
 }
 
 /// Mean filled IoU of what a scene holds with the true objects, nearest with nearest; 0 for one that is missing.
-double mean_iou(const Scene& scene, const SyntheticSource& source, const std::vector<TruthShape>& shapes) {
+double mean_iou(const Scene& scene, const SyntheticSource& source, const test::TrueShapes& shapes) {
   const FrameTruth truth = source.truth(0);
   double sum = 0;
   for (std::size_t i = 0; i < shapes.size(); ++i) {
     const Transform T_camera_object = scene.T_world_sensor.inverse() * truth.T_world_camera * truth.T_camera_object[i];
     double best = 0;
-    for (const SceneObject& object : scene.objects) {
-      const TruthView view{std::make_shared<const TruthShape>(shapes[i]), T_camera_object, std::vector<std::uint8_t>(shapes[i].samples.points.size(), 1)};
-      best = std::max(best, measure_fit(view, object.model, {}).iou_filled);
-    }
+    for (const SceneObject& object : scene.objects) best = std::max(best, test::filled_iou(shapes[i], T_camera_object, object.model));
     sum += best;
   }
   return sum / static_cast<double>(shapes.size());
-}
-
-std::vector<TruthShape> true_shapes(const SyntheticSource& source) {
-  std::vector<TruthShape> shapes;
-  for (const PlacedMesh& object : source.scene().objects) shapes.push_back(*make_truth_shape(object.name, object.class_name, object.mesh));
-  return shapes;
 }
 
 // What one sees and the other does not goes into one shape, which both publish: better than either alone, and once both have looked twice it
 // stands as it is.
 TEST(TwoSensors, FitOneShapeToWhatBothSee) {
   SyntheticSource front(standing_at("front", -1.6)), back(standing_at("back", 1.54));
-  const std::vector<TruthShape> shapes = true_shapes(front);
+  const test::TrueShapes shapes = test::true_shapes(front.scene());
   const std::vector<Scene> together = scenes_in_turn({&front, &back}, 4);
   double alone = 0;
   for (const char* name : {"front", "back"}) {
@@ -130,7 +120,7 @@ double mean_iou_around(int field_views) {
   options.orbit_period_s = 8;
   options.rate_hz = 5;
   SyntheticSource source(options);
-  const std::vector<TruthShape> shapes = true_shapes(source);
+  const test::TrueShapes shapes = test::true_shapes(source.scene());
   PipelineOptions pipeline;
   pipeline.memory.field_views = field_views;
   SceneMemory memory;

@@ -6,10 +6,10 @@
 #include <numbers>
 #include <string>
 
-#include "gfp/core/isosurface.hpp"
 #include "gfp/core/self_intersections.hpp"
 #include "gfp/modelling/fit_superquadric.hpp"
 #include "gfp/modelling/superquadric.hpp"
+#include "support/field_surface.hpp"
 #include "support/shapes.hpp"
 #include "support/view_of_mesh.hpp"
 
@@ -46,12 +46,7 @@ TriangleMesh foot_and_post() {
     const double post = std::min(0.016 - std::hypot(p.x(), p.y()), std::min(p.z(), 0.16 - p.z()));
     return std::max(foot, post);
   };
-  constexpr double kStep = 0.002;
-  ScalarGrid grid({-0.06, -0.06, -0.004}, kStep, {61, 61, 86});
-  for (int k = 0; k < 86; ++k)
-    for (int j = 0; j < 61; ++j)
-      for (int i = 0; i < 61; ++i) grid.values[grid.index(i, j, k)] = static_cast<float>(field(grid.place({i, j, k})));
-  return isosurface(grid, 0.0F);
+  return test::field_surface(field, {-0.06, -0.06, -0.004}, 0.002, {61, 61, 86});
 }
 
 double volume_error(const FittedModel& model, const TriangleMesh& truth) { return std::abs(signed_volume(model.mesh_object()) / signed_volume(truth) - 1); }

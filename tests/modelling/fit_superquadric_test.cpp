@@ -7,8 +7,8 @@
 #include <numbers>
 #include <string>
 
-#include "gfp/core/isosurface.hpp"
 #include "gfp/modelling/superquadric.hpp"
+#include "support/field_surface.hpp"
 #include "support/shapes.hpp"
 #include "support/view_of_mesh.hpp"
 
@@ -190,12 +190,7 @@ TEST(FitSuperquadric, WhatNoBodyExplainsGetsTheBoxAboutIt) {
     const double post = std::min({0.02 - std::abs(p.x()), 0.02 - std::abs(p.y()), p.z(), 0.38 - p.z()});
     return std::max(seat, post);
   };
-  constexpr double kStep = 0.008;
-  ScalarGrid grid({-0.22, -0.22, -0.02}, kStep, {56, 56, 58});
-  for (int k = 0; k < 58; ++k)
-    for (int j = 0; j < 56; ++j)
-      for (int i = 0; i < 56; ++i) grid.values[grid.index(i, j, k)] = static_cast<float>(field(grid.place({i, j, k})));
-  const TriangleMesh stool = isosurface(grid, 0.0F);
+  const TriangleMesh stool = test::field_surface(field, {-0.22, -0.22, -0.02}, 0.008, {56, 56, 58});
   for (const double elevation : {15.0, 30.0}) {
     const ObjectView view = view_at(stool, elevation, 25);
     const FittedModel model = fit_superquadric(view);

@@ -164,16 +164,10 @@ class FailingStorage final : public RecordingStorage {
   std::size_t from_, until_;
 };
 
-/// Write `number` + 1 is refused: every message is in a file that is right, or counted as lost.
-Trial write_trial(std::uint64_t number) {
-  FailingStorage storage(number + 1, number + 2);
-  RecordingOptions options;
-  options.mode = "continuous";
-  options.max_file_mb = 1;
-  RecordingSeries series(options, storage);
+/// Short messages, 10 ms apart, to the end of the recording.
+void record(RecordingSeries& series, std::uint32_t messages) {
   Nanoseconds now{};
-  constexpr std::uint32_t kMessages = 11'000;  // 20 a chunk: 550 writes and the ends of files
-  for (std::uint32_t i = 0; i < kMessages; ++i) {
+  for (std::uint32_t i = 0; i < messages; ++i) {
     McapMessage message = test::as_message(test::sample_message(i % kSamples), i);
     message.log_time_ns = 1'000'000'000ULL + 10'000'000ULL * i;
     message.data = message.data.substr(0, 100);
@@ -181,6 +175,17 @@ Trial write_trial(std::uint64_t number) {
     series.tick(now);
   }
   series.close();
+}
+
+/// Write `number` + 1 is refused: every message is in a file that is right, or counted as lost.
+Trial write_trial(std::uint64_t number) {
+  FailingStorage storage(number + 1, number + 2);
+  RecordingOptions options;
+  options.mode = "continuous";
+  options.max_file_mb = 1;
+  RecordingSeries series(options, storage);
+  constexpr std::uint32_t kMessages = 11'000;  // 20 a chunk: 550 writes and the ends of files
+  record(series, kMessages);
   Trial trial;
   std::uint64_t found = 0;
   for (const auto& file : storage.files) {
@@ -235,15 +240,7 @@ std::vector<DiskEvent> make_trace() {
   options.mode = "continuous";
   RecordingSeries series(options, storage);
   storage.messages = [&] { return series.status().messages; };
-  Nanoseconds now{};
-  for (std::uint32_t i = 0; i < 6000; ++i) {
-    McapMessage message = test::as_message(test::sample_message(i % kSamples), i);
-    message.log_time_ns = 1'000'000'000ULL + 10'000'000ULL * i;
-    message.data = message.data.substr(0, 100);
-    series.put(kSpecs[i % 3], message, now += Nanoseconds(10'000'000));
-    series.tick(now);
-  }
-  series.close();
+  record(series, 6000);
   return storage.events;
 }
 
