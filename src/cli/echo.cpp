@@ -45,7 +45,7 @@ void add_echo_command(CLI::App& app, ExitStatus& status) {
   CLI::App* command = app.add_subcommand("echo", "Prints the messages of a topic, decoded");
   add_listen_options(*command, *arguments);
   command->callback([arguments, &status] {
-    if (read_listen_keys(*arguments, status)) echo(*arguments, status);
+    if (read_keys(arguments->keys, arguments->subscriber.curve, status)) echo(*arguments, status);
   });
 }
 

@@ -17,15 +17,18 @@ void add_stream_options(CLI::App& command, ListenArguments& arguments) {
   command.add_option("--seconds", arguments.seconds, "Ends after so many seconds")->check(CLI::NonNegativeNumber);
   command.add_option("--count", arguments.count, "Ends after so many messages");
   command.add_flag("--json", arguments.json, "A JSON object a line");
-  CLI::Option* server = command.add_option("--server-key", arguments.server_key, "The daemon's .pub file, where it serves tcp with CURVE");
-  CLI::Option* own = command.add_option("--key", arguments.key, "One's own .key file (gfp key new)");
+  add_key_options(command, arguments.keys);
+}
+
+void add_key_options(CLI::App& command, KeyFiles& files) {
+  CLI::Option* server = command.add_option("--server-key", files.server, "The daemon's .pub file, where it serves tcp with CURVE");
+  CLI::Option* own = command.add_option("--key", files.own, "One's own .key file (gfp key new)");
   server->needs(own);
   own->needs(server);
 }
 
-bool read_listen_keys(ListenArguments& arguments, ExitStatus& status) {
-  CurveAccess& curve = arguments.subscriber.curve;
-  for (const auto& [file, is_own] : {std::pair{&arguments.server_key, false}, {&arguments.key, true}}) {
+bool read_keys(const KeyFiles& files, CurveAccess& curve, ExitStatus& status) {
+  for (const auto& [file, is_own] : {std::pair{&files.server, false}, {&files.own, true}}) {
     if (file->empty()) continue;
     auto key = read_curve_key(*file);
     if (key && is_own && key->secret_key.empty()) key = failure(ErrorCode::kInvalidArgument, "only a public key, expected one's own .key file");

@@ -10,6 +10,16 @@
 
 namespace gfp {
 
+/// Files of keys, for a daemon that serves tcp with CURVE; empty: none.
+struct KeyFiles {
+  std::string server, own;
+};
+
+void add_key_options(CLI::App& command, KeyFiles& files);
+
+/// Reads the files that were named; says what is wrong with them, and returns false.
+bool read_keys(const KeyFiles& files, CurveAccess& curve, ExitStatus& status);
+
 /// What `gfp sub`, `gfp echo` and `gfp top` share: which topic, from where, how long.
 struct ListenArguments {
   std::string topic;
@@ -17,14 +27,11 @@ struct ListenArguments {
   double seconds = 0;       ///< 0: until interrupted.
   std::uint64_t count = 0;  ///< Messages; 0: any number.
   bool json = false;
-  std::string server_key, key;  ///< Key files, for a daemon that serves tcp with CURVE.
+  KeyFiles keys;
 };
 
 void add_stream_options(CLI::App& command, ListenArguments& arguments);  ///< All but the topic.
 void add_listen_options(CLI::App& command, ListenArguments& arguments);
-
-/// Reads the key files that were named into `arguments.subscriber`; says what is wrong with them, and returns false.
-bool read_listen_keys(ListenArguments& arguments, ExitStatus& status);
 
 /// When to stop listening: SIGINT or SIGTERM (which end a command cleanly from now on), the time or the count.
 class ListenEnd {

@@ -7,33 +7,21 @@
 #include <string>
 
 #include "cli/commands.hpp"
+#include "cli/listen.hpp"
 #include "gfp/client/control_client.hpp"
 
 namespace gfp {
 namespace {
 
 struct RecorderArguments {
-  std::string action, endpoint, server_key, key;
+  std::string action;
+  ControlOptions daemon;
+  KeyFiles keys;
   bool json = false;
 };
 
-Result<CurveAccess> access(const RecorderArguments& arguments) {
-  CurveAccess access;
-  if (arguments.server_key.empty() && arguments.key.empty()) return access;
-  const auto server = read_curve_key(arguments.server_key), own = read_curve_key(arguments.key);
-  if (!server) return tl::unexpected(server.error());
-  if (!own) return tl::unexpected(own.error());
-  return CurveAccess{server->public_key, *own};
-}
-
 Result<RecorderState> ask(const RecorderArguments& arguments) {
-  ControlOptions options;
-  options.endpoint = arguments.endpoint;
-  options.timeout = std::chrono::seconds(15);  // a slow disk is waited for
-  auto curve = access(arguments);
-  if (!curve) return tl::unexpected(curve.error());
-  options.curve = std::move(*curve);
-  auto client = ControlClient::connect(options);
+  auto client = ControlClient::connect(arguments.daemon);
   if (!client) return tl::unexpected(client.error());
   if (arguments.action == "start") return client->recorder(RecorderAction::kStart);
   if (arguments.action == "stop") return client->recorder(RecorderAction::kStop);
@@ -57,14 +45,13 @@ void print(const RecorderState& state, bool json) {
 void add_recorder_command(CLI::App& app, ExitStatus& status) {
   CLI::App& command = *app.add_subcommand("recorder", "Starts, stops and triggers the recorder of a running gfpd; its files are on gfpd's host, in recording.folder");
   const auto arguments = std::make_shared<RecorderArguments>();
+  arguments->daemon.timeout = std::chrono::seconds(15);  // a slow disk is waited for
   command.add_option("ACTION", arguments->action, "start: everything from now on goes into a file; stop: it is closed; trigger: what the ring holds becomes a file; status")->required()->check(CLI::IsMember({"start", "stop", "trigger", "status"}));
-  command.add_option("--endpoint", arguments->endpoint, "Of gfpd's control socket; by default this host's");
-  auto* server = command.add_option("--server-key", arguments->server_key, "gfpd's .pub file, where its endpoint is tcp with CURVE");
-  auto* key = command.add_option("--key", arguments->key, "One's own .key file");
-  server->needs(key);
-  key->needs(server);
+  command.add_option("--endpoint", arguments->daemon.endpoint, "Of gfpd's control socket; by default this host's");
+  add_key_options(command, arguments->keys);
   command.add_flag("--json", arguments->json, "One JSON object");
   command.callback([arguments, &status] {
+    if (!read_keys(arguments->keys, arguments->daemon.curve, status)) return;
     const auto state = ask(*arguments);
     if (state) print(*state, arguments->json);
     else status.fail(std::cerr, "recorder", state.error());

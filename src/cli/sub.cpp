@@ -76,7 +76,7 @@ void add_sub_command(CLI::App& app, ExitStatus& status) {
   CLI::App* command = app.add_subcommand("sub", "Shows what a running gfpd publishes: scenes as a table, other topics a line a message");
   add_listen_options(*command, *arguments);
   command->callback([arguments, &status] {
-    if (!read_listen_keys(*arguments, status)) return;
+    if (!read_keys(arguments->keys, arguments->subscriber.curve, status)) return;
     if (arguments->topic == "/gfp/scene/") sub_scenes(*arguments, status);
     else sub_messages(*arguments, status);
   });

@@ -77,7 +77,7 @@ void add_top_command(CLI::App& app, ExitStatus& status) {
   CLI::App* command = app.add_subcommand("top", "Shows how a running gfpd does: rates, latencies, drops, traffic");
   add_stream_options(*command, *arguments);
   command->callback([arguments, &status] {
-    if (read_listen_keys(*arguments, status)) top(*arguments, status);
+    if (read_keys(arguments->keys, arguments->subscriber.curve, status)) top(*arguments, status);
   });
 }
 
