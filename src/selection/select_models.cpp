@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <utility>
 
 #include "gfp/memory/image_score.hpp"
@@ -43,12 +44,18 @@ double share_of_known(const FittedModel& model) {
   return model.primitive ? kAmongThem * (kLeastAmongThem + (1 - kLeastAmongThem) / (1 + ratio * ratio * ratio)) : 1.0;
 }
 
+/// Of each candidate, beside the best one.
+std::vector<double> odds_of(const std::vector<double>& evidences) {
+  const double best = *std::max_element(evidences.begin(), evidences.end());
+  std::vector<double> odds;
+  for (const double evidence : evidences) odds.push_back(std::exp((evidence - best) / kTemperature));
+  return odds;
+}
+
 /// How sure an object is of each of its candidates; what is left of 1 is none of them.
 std::vector<double> beliefs(const std::vector<Candidate>& candidates, const std::vector<double>& evidences) {
-  const double best = *std::max_element(evidences.begin(), evidences.end());
-  std::vector<double> result;
-  double total = 0;
-  for (const double evidence : evidences) total += result.emplace_back(std::exp((evidence - best) / kTemperature));
+  std::vector<double> result = odds_of(evidences);
+  const double total = std::accumulate(result.begin(), result.end(), 0.0);
   for (std::size_t k = 0; k < result.size(); ++k) result[k] *= share_of_known(candidates[k].model) / total;
   return result;
 }
@@ -85,13 +92,13 @@ ObjectEstimate select_one(const ObjectView& view, std::vector<Candidate> candida
   std::vector<double> totals = evidences;
   for (std::size_t k = 0; k < totals.size(); ++k) totals[k] += context[k];
   const auto best = static_cast<std::size_t>(std::max_element(totals.begin(), totals.end()) - totals.begin());
+  const std::vector<double> odds = odds_of(totals);
   double total = 0;
   std::map<std::string, std::pair<double, double>> odds_and_share;  // a class is as probable as its best placement
   for (std::size_t k = 0; k < candidates.size(); ++k) {
-    const double odds = std::exp((totals[k] - totals[best]) / kTemperature);
     auto& of_class = odds_and_share[candidates[k].model.class_name];
-    total += std::max(0.0, odds - of_class.first);
-    if (odds > of_class.first) of_class = {odds, share_of_known(candidates[k].model)};
+    total += std::max(0.0, odds[k] - of_class.first);
+    if (odds[k] > of_class.first) of_class = {odds[k], share_of_known(candidates[k].model)};
   }
   double named = 0;
   for (const auto& [name, of_class] : odds_and_share) {
