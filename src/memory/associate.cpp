@@ -23,7 +23,7 @@ Eigen::Vector3d guess_up(const Frame& frame, const SceneMemory& memory) {
 /// The frame's sensor as it last saw the object, if it has not moved since.
 const SensorTrack* from_same_standpoint(const Track& track, const Frame& frame) {
   const SensorTrack* seen = track.seen_by(frame.sensor);
-  return seen && seen->T_world_sensor.isApprox(frame.T_world_sensor, 1e-9) ? seen : nullptr;
+  return seen && same_pose(seen->T_world_sensor, frame.T_world_sensor) ? seen : nullptr;
 }
 
 /// How many of the pixels where an object was each segment holds now.

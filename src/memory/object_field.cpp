@@ -76,7 +76,7 @@ Vector3d direction_world(const Transform& T_world_sensor, const ObjectView& view
 double angle(const Vector3d& a, const Vector3d& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
 
 ObjectField::const_iterator find_standpoint(const ObjectField& field, const std::string& sensor, const Transform& T_world_sensor) {
-  return std::find_if(field.begin(), field.end(), [&](const FieldView& old) { return old.sensor == sensor && old.T_world_sensor.isApprox(T_world_sensor, 1e-9); });
+  return std::find_if(field.begin(), field.end(), [&](const FieldView& old) { return old.sensor == sensor && same_pose(old.T_world_sensor, T_world_sensor); });
 }
 
 /// Between two views from one standpoint.
@@ -96,50 +96,49 @@ ObjectField remember_view(ObjectField field, const std::string& sensor, const Tr
                           const AssociateOptions& options) {
   if (options.field_views == 0) return {};
   const double least = options.field_angle_deg * std::numbers::pi / 180;
-  const auto alone = [&] {
-    ObjectView copy = view;
-    copy.field.clear();
-    copy.warm_start.reset();
-    return std::make_shared<const ObjectView>(std::move(copy));
+  const Vector3d direction = direction_world(T_world_sensor, view);
+  const auto entry = [&]() -> FieldView {
+    ObjectView alone = view;
+    alone.field.clear();
+    alone.warm_start.reset();
+    return {sensor, T_world_sensor, std::make_shared<const ObjectView>(std::move(alone)), direction};
   };
   if (const auto old = find_standpoint(field, sensor, T_world_sensor); old != field.end()) {
     if (same_within_noise(view, *old->view, options)) return field;
-    if (has_moved(view, *old->view)) return {{sensor, T_world_sensor, alone()}};
-    field[static_cast<std::size_t>(old - field.begin())].view = alone();
+    if (has_moved(view, *old->view)) return {entry()};
+    field[static_cast<std::size_t>(old - field.begin())] = entry();
     return field;
   }
-  const Vector3d direction = direction_world(T_world_sensor, view);
-  const bool known = std::any_of(field.begin(), field.end(), [&](const FieldView& old) { return angle(direction, direction_world(old.T_world_sensor, *old.view)) < least; });
+  const bool known = std::any_of(field.begin(), field.end(), [&](const FieldView& old) { return angle(direction, old.direction_world) < least; });
   if (known) return field;
-  field.push_back({sensor, T_world_sensor, alone()});
+  field.push_back(entry());
   if (field.size() > static_cast<std::size_t>(options.field_views) + kSpare) field.erase(field.begin());
   return field;
 }
 
 std::vector<Sighting> sightings(const ObjectField& field, const std::string& sensor, const Transform& T_world_sensor, const ObjectView& view,
                                 const AssociateOptions& options) {
-  if (const auto old = find_standpoint(field, sensor, T_world_sensor); old != field.end() && has_moved(view, *old->view)) return {};
   struct Choice {
-    Sighting sighting;
-    Vector3d direction;
+    const FieldView* seen;
     double apart;  ///< Angle to the nearest direction that is looked from already.
   };
   const double least = options.field_angle_deg * std::numbers::pi / 180;
   const Vector3d own = direction_world(T_world_sensor, view);
   std::vector<Choice> open;
-  for (const FieldView& old : field) {
-    const Vector3d direction = direction_world(old.T_world_sensor, *old.view);
-    open.push_back({{old.T_world_sensor.inverse() * T_world_sensor, old.view}, direction, angle(own, direction)});
-  }
+  for (const FieldView& seen : field)
+    if (const double apart = angle(own, seen.direction_world); apart >= least) open.push_back({&seen, apart});
+  if (open.empty()) return {};  // a sensor alone, as a rule
+  if (const auto old = find_standpoint(field, sensor, T_world_sensor); old != field.end() && has_moved(view, *old->view)) return {};
   std::vector<Sighting> chosen;
   while (chosen.size() < static_cast<std::size_t>(options.field_views)) {
     const auto farthest = std::max_element(open.begin(), open.end(), [](const Choice& a, const Choice& b) { return a.apart < b.apart; });
     if (farthest == open.end() || farthest->apart < least) break;
-    const Choice choice = std::move(*farthest);
+    const FieldView& seen = *farthest->seen;
     open.erase(farthest);
-    if (contradicts(view, *choice.sighting.view, choice.sighting.T_sighting_camera)) continue;
-    for (Choice& other : open) other.apart = std::min(other.apart, angle(other.direction, choice.direction));
-    chosen.push_back(choice.sighting);
+    const Transform T_sighting_camera = seen.T_world_sensor.inverse() * T_world_sensor;
+    if (contradicts(view, *seen.view, T_sighting_camera)) continue;
+    for (Choice& other : open) other.apart = std::min(other.apart, angle(other.seen->direction_world, seen.direction_world));
+    chosen.push_back({T_sighting_camera, seen.view});
   }
   return chosen;
 }

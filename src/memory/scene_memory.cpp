@@ -9,6 +9,11 @@ const SensorTrack* Track::seen_by(const std::string& sensor) const {
   return found != sensors.end() ? &*found : nullptr;
 }
 
+const Track* SceneMemory::track(std::uint64_t id) const {
+  const auto found = std::find_if(tracks.begin(), tracks.end(), [&](const Track& track) { return track.id == id; });
+  return found != tracks.end() ? &*found : nullptr;
+}
+
 const SensorMemory& SceneMemory::of(const std::string& sensor) const {
   static const SensorMemory kNothing;
   const auto found = sensors.find(sensor);

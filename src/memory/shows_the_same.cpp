@@ -71,7 +71,7 @@ bool any_span(int width, int step, Predicate&& holds) {
 bool same_standpoint(const Frame& now, const Frame& before) {
   constexpr double kSameUp = 0.9994;  // cosine of 2 degrees: accelerometers are noisy
   const bool same_up = now.up_camera.has_value() == before.up_camera.has_value() && (!now.up_camera || now.up_camera->dot(*before.up_camera) > kSameUp);
-  return same_up && now.sensor == before.sensor && now.camera == before.camera && now.T_world_sensor.isApprox(before.T_world_sensor, 1e-9);
+  return same_up && now.sensor == before.sensor && now.camera == before.camera && same_pose(now.T_world_sensor, before.T_world_sensor);
 }
 
 }  // namespace

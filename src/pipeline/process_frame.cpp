@@ -31,12 +31,6 @@ NormalMap object_normals(const OrganizedCloud& cloud, const Segments& segments, 
   return estimate_normals(cloud, options, object_boxes(segments));
 }
 
-const Track* find_track(const SceneMemory& memory, std::uint64_t id) {
-  for (const Track& track : memory.tracks)
-    if (track.id == id) return &track;
-  return nullptr;
-}
-
 /// One object on its way through the stages; `candidates` stay empty where nothing could be fitted.
 struct Work {
   const ObjectView* view = nullptr;
@@ -53,7 +47,7 @@ std::vector<Work> plan_work(const std::vector<ObjectView>& views, const SceneMem
   std::vector<Work> work(views.size());
   for (std::size_t i = 0; i < views.size(); ++i) {
     work[i].view = &views[i];
-    const Track* track = find_track(memory, views[i].id);
+    const Track* track = memory.track(views[i].id);
     if (!track) continue;
     const SensorTrack* own = track->seen_by(sensor);
     const SensorTrack& seen = own && own->object ? *own : track->last();
@@ -141,7 +135,7 @@ void add_objects(Scene& scene, std::vector<Work> work, const Segments& segments,
                  const PipelineOptions& options) {
   std::vector<const SceneObject*> left;
   for (const std::uint64_t id : scene.lost)
-    if (const Track* track = find_track(memory, id)) left.push_back(track->seen_by(scene.sensor)->object.get());
+    if (const Track* track = memory.track(id)) left.push_back(track->seen_by(scene.sensor)->object.get());
   std::vector<GraspSubject> subjects;
   for (Work& w : work) subjects.push_back({&w.object, w.view, w.before, w.view_before});
   plan_scene_grasps(subjects, segments, cloud, left, options);

@@ -34,8 +34,8 @@ Scene shadow_scene(const Scene& scene, const SceneMemory& memory, const Primitiv
   result.objects.clear();
   result.ms.clear();
   for (const SceneObject& object : scene.objects) {
-    const auto track = std::find_if(memory.tracks.begin(), memory.tracks.end(), [&](const Track& t) { return t.id == object.id; });
-    const SensorTrack* seen = track != memory.tracks.end() ? track->seen_by(scene.sensor) : nullptr;
+    const Track* track = memory.track(object.id);
+    const SensorTrack* seen = track ? track->seen_by(scene.sensor) : nullptr;
     if (!seen || !seen->fitted_view) continue;
     const auto known = last.objects.find(object.id);
     std::optional<SceneObject> shadow;

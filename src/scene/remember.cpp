@@ -8,12 +8,6 @@
 namespace gfp {
 namespace {
 
-const Track* find_track(const SceneMemory& memory, std::uint64_t id) {
-  for (const Track& track : memory.tracks)
-    if (track.id == id) return &track;
-  return nullptr;
-}
-
 const SceneObject* find_object(const Scene& scene, std::uint64_t id) {
   for (const SceneObject& object : scene.objects)
     if (object.id == id) return &object;
@@ -158,7 +152,7 @@ SceneMemory remember(const Scene& scene, const Frame& frame, const std::vector<O
   next.frames = memory.frames + 1;
   next.field_changes = memory.field_changes;
   for (const ObjectView& view : views) {
-    const Track* before = find_track(memory, view.id);
+    const Track* before = memory.track(view.id);
     next.tracks.push_back(next_track(view, scene, before, options));
     next.field_changes += same_views(next.tracks.back().field, before ? before->field : ObjectField{}) ? 0 : 1;
     next.next_id = std::max(next.next_id, view.id + 1);

@@ -15,6 +15,7 @@ struct FieldView {
   std::string sensor;
   Transform T_world_sensor = Transform::Identity();
   std::shared_ptr<const ObjectView> view;  ///< Its own `field` is empty.
+  Eigen::Vector3d direction_world = Eigen::Vector3d::UnitX();  ///< From the sensor to the object's readings, unit: asked in every frame, and `view` is large.
 };
 
 /// All that is kept of how an object looks from around, oldest first: views from directions apart from each other. Whole views and no voxels: each
@@ -32,6 +33,9 @@ ObjectField remember_view(ObjectField field, const std::string& sensor, const Tr
 /// that both see and that lie apart.
 std::vector<Sighting> sightings(const ObjectField& field, const std::string& sensor, const Transform& T_world_sensor, const ObjectView& view,
                                 const AssociateOptions& options = {});
+
+/// Whether a sensor stands where it stood: both T_world_sensor.
+inline bool same_pose(const Transform& a, const Transform& b) { return a.isApprox(b, 1e-9); }
 
 /// Centre of the object's readings, camera frame, metres.
 Eigen::Vector3d seen_centre(const ObjectView& view);

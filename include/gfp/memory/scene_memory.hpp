@@ -66,6 +66,8 @@ struct SceneMemory {
   std::vector<Track> tracks;                                ///< By id, ascending.
   std::map<std::string, SensorMemory> sensors;              ///< By name.
 
+  /// By id; nullptr where there is none.
+  const Track* track(std::uint64_t id) const;
   /// What is remembered of a sensor; nothing yet where it is new.
   const SensorMemory& of(const std::string& sensor) const;
 };
