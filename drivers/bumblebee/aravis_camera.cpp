@@ -35,6 +35,28 @@ class Failure {
 
 std::string text(const char* from) { return from != nullptr ? from : ""; }
 
+/// Copies the picture out; of several parts (GigE Vision's Multi-part), the first two pictures, one above the other.
+Result<void> take_pixels(ArvBuffer* buffer, Transfer& transfer) {
+  std::vector<guint> pictures;
+  for (guint part = 0; part < arv_buffer_get_n_parts(buffer) && pictures.size() < 2; ++part)
+    if (arv_buffer_get_part_data_type(buffer, part) == ARV_BUFFER_PART_DATA_TYPE_2D_IMAGE) pictures.push_back(part);
+  if (pictures.empty()) return failure(ErrorCode::kCorruptFrame, "a transfer without a picture");
+  const guint first = pictures.front(), last = pictures.back();
+  const ArvPixelFormat pixel_format = arv_buffer_get_part_pixel_format(buffer, first);
+  transfer.width = arv_buffer_get_part_width(buffer, first);
+  transfer.height = arv_buffer_get_part_height(buffer, first);
+  transfer.bytes_per_pixel = static_cast<int>(ARV_PIXEL_FORMAT_BIT_PER_PIXEL(pixel_format) / 8);
+  if (arv_buffer_get_part_width(buffer, last) != transfer.width || arv_buffer_get_part_height(buffer, last) != transfer.height || arv_buffer_get_part_pixel_format(buffer, last) != pixel_format)
+    return failure(ErrorCode::kCorruptFrame, fmt::format("its parts differ: {} x {} and {} x {}", transfer.width, transfer.height, arv_buffer_get_part_width(buffer, last), arv_buffer_get_part_height(buffer, last)));
+  transfer.height *= static_cast<int>(pictures.size());
+  for (const guint part : pictures) {
+    std::size_t size = 0;
+    const auto* const data = static_cast<const std::uint8_t*>(arv_buffer_get_part_data(buffer, part, &size));
+    transfer.bytes.insert(transfer.bytes.end(), data, data + size);
+  }
+  return {};
+}
+
 }  // namespace
 
 struct AravisCamera::Handles {
@@ -122,16 +144,11 @@ Result<Transfer> AravisCamera::next(std::chrono::milliseconds timeout) {
   const std::unique_ptr<ArvBuffer, std::function<void(ArvBuffer*)>> back(buffer, [this](ArvBuffer* used) { arv_stream_push_buffer(handles_->stream, used); });
   if (const auto status = arv_buffer_get_status(buffer); status != ARV_BUFFER_STATUS_SUCCESS)
     return failure(ErrorCode::kCorruptFrame, fmt::format("{}: an incomplete picture (status {}): packets are missing", model_, static_cast<int>(status)));
-  std::size_t size = 0;
-  const auto* const data = static_cast<const std::uint8_t*>(arv_buffer_get_data(buffer, &size));
   Transfer transfer;
   transfer.number = number;
   transfer.arrival = monotonic_now() - std::clamp(realtime_now() - Nanoseconds(static_cast<std::int64_t>(arv_buffer_get_system_timestamp(buffer))), Nanoseconds::zero(), kMaxAge);
   transfer.device = Nanoseconds(static_cast<std::int64_t>(arv_buffer_get_timestamp(buffer)));
-  transfer.width = arv_buffer_get_image_width(buffer);
-  transfer.height = arv_buffer_get_image_height(buffer);
-  transfer.bytes_per_pixel = static_cast<int>(ARV_PIXEL_FORMAT_BIT_PER_PIXEL(arv_buffer_get_image_pixel_format(buffer)) / 8);
-  transfer.bytes.assign(data, data + size);
+  if (auto taken = take_pixels(buffer, transfer); !taken) return failure(taken.error().code, fmt::format("{}: {}", model_, taken.error().what));
   return transfer;
 }
 

@@ -72,7 +72,8 @@ TEST(Bumblebee, AnIncompletePictureIsNeverPassedOn) {
   const test::GigeLock lock;
   Receiver receiver;
   FakeBumblebeeOptions lossy;
-  lossy.lost_packets = 0.001;  // of 440 packets a frame
+  lossy.camera.lost_packets = 0.001;  // of 440 packets a frame
+  lossy.camera.resends = false;
   const auto fake = FakeBumblebee::start(receiver.sent, lossy);
   ASSERT_TRUE(fake) << fake.error().what;
   const auto source = make_bumblebee_source(options(), receiver.to_frame());
@@ -93,7 +94,8 @@ TEST(Bumblebee, EveryPictureIsAccountedFor) {
   for (const double lost_packets : {0.001, 0.005, 0.01, 0.02}) {
     Receiver receiver;
     FakeBumblebeeOptions lossy;
-    lossy.lost_packets = lost_packets;
+    lossy.camera.lost_packets = lost_packets;
+    lossy.camera.resends = false;
     const auto fake = FakeBumblebee::start(receiver.sent, lossy);
     ASSERT_TRUE(fake) << fake.error().what;
     BumblebeeOptions large = options();
@@ -139,6 +141,128 @@ TEST(Bumblebee, PluggedInAgainItGoesOn) {
     EXPECT_FALSE(frame);
     source->close();
   }
+}
+
+// Losses are asked for again, and again where that was lost as well.
+TEST(Bumblebee, LostPacketsAreSentAgain) {
+  const test::GigeLock lock;
+  Receiver receiver;
+  FakeBumblebeeOptions lossy;
+  lossy.camera.lost_packets = 0.01;  // of 440 packets a frame: 1 frame in 80 would be whole
+  const auto fake = FakeBumblebee::start(receiver.sent, lossy);
+  ASSERT_TRUE(fake) << fake.error().what;
+  const auto source = make_bumblebee_source(options(), receiver.to_frame());
+  ASSERT_TRUE(source->open());
+  int grabs = 0;
+  for (; grabs < 400 && receiver.whole < 40; ++grabs) (void)source->grab(2s);
+  std::printf("1 %% of packets lost, %llu sent again: %d of %d pictures whole\n", static_cast<unsigned long long>((*fake)->resent()), receiver.whole.load(), grabs);
+  EXPECT_EQ(receiver.damaged, 0);
+  EXPECT_GE(receiver.whole, 40);
+  EXPECT_LE(grabs, 60);
+  EXPECT_GE((*fake)->resent(), 40U);
+}
+
+struct Layout {
+  const char* fake;
+  const char* options;
+};
+class BumblebeeLayout : public ::testing::TestWithParam<Layout> {};
+
+TEST_P(BumblebeeLayout, BothEyesArriveWhole) {
+  const test::GigeLock lock;
+  Receiver receiver;
+  FakeBumblebeeOptions camera;
+  camera.layout = GetParam().fake;
+  const auto fake = FakeBumblebee::start(receiver.sent, camera);
+  ASSERT_TRUE(fake) << fake.error().what;
+  BumblebeeOptions of_layout = options();
+  of_layout.layout = GetParam().options;
+  const auto source = make_bumblebee_source(of_layout, receiver.to_frame());
+  const auto opened = source->open();
+  ASSERT_TRUE(opened) << opened.error().what;
+  for (int i = 0; i < 400 && receiver.whole < 20; ++i) (void)source->grab(2s);
+  EXPECT_EQ(receiver.whole, 20);
+  EXPECT_EQ(receiver.damaged, 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(, BumblebeeLayout, ::testing::Values(Layout{"interleaved", "interleaved"}, Layout{"stacked", "stacked"}, Layout{"parts", "stacked"}),
+                         [](const auto& of) { return std::string(of.param.fake); });
+
+/// Two cameras of one eye each, on two addresses, which send together.
+struct TwoCameras {
+  explicit TwoCameras(const std::vector<StereoPair>& pairs, double lost_packets = 0) {
+    for (const char* eye : {"left", "right"}) {
+      FakeBumblebeeOptions one;
+      one.layout = eye;
+      one.camera.serial = std::string("GFPBB_") + eye;
+      one.camera.address = eyes.empty() ? "127.0.0.1" : "127.0.0.2";
+      one.camera.lost_packets = lost_packets;
+      one.camera.resends = false;
+      auto started = FakeBumblebee::start(pairs, one);
+      EXPECT_TRUE(started) << started.error().what;
+      if (started) eyes.push_back(std::move(*started));
+    }
+  }
+  static BumblebeeOptions options() {
+    BumblebeeOptions both;
+    both.layout = "two_devices";
+    both.device = "Aravis-GFPBB_left,Aravis-GFPBB_right";
+    return both;
+  }
+  std::vector<std::unique_ptr<FakeBumblebee>> eyes;
+};
+
+TEST(Bumblebee, TwoCamerasAreOne) {
+  const test::GigeLock lock;
+  Receiver receiver;
+  const std::vector<StereoPair> one{receiver.sent.front()};  // which picture a camera begins with is its own affair
+  const TwoCameras cameras(one);
+  ASSERT_EQ(cameras.eyes.size(), 2U);
+  const auto source = make_bumblebee_source(TwoCameras::options(), receiver.to_frame());
+  const auto opened = source->open();
+  ASSERT_TRUE(opened) << opened.error().what;
+  Nanoseconds last{-1};
+  for (int i = 0; i < 400 && receiver.whole < 20; ++i) {
+    const auto frame = source->grab(2s);
+    if (!frame) continue;
+    EXPECT_GT(frame->stamps.sensor, last);
+    last = frame->stamps.sensor;
+  }
+  EXPECT_EQ(receiver.whole, 20);
+  EXPECT_EQ(receiver.damaged, 0);
+}
+
+// One eye's loss costs that pair: what follows belongs together again.
+TEST(Bumblebee, TwoCamerasStayInStepWhenOneLosesPictures) {
+  const test::GigeLock lock;
+  Receiver receiver;
+  const TwoCameras cameras(receiver.sent, 0.0005);
+  ASSERT_EQ(cameras.eyes.size(), 2U);
+  const auto source = make_bumblebee_source(TwoCameras::options(), receiver.to_frame());
+  ASSERT_TRUE(source->open());
+  int corrupt = 0;
+  for (int i = 0; i < 400 && (corrupt < 5 || receiver.whole + receiver.damaged < 20); ++i) {
+    const auto frame = source->grab(2s);
+    corrupt += !frame && frame.error().code == ErrorCode::kCorruptFrame ? 1 : 0;
+  }
+  source->close();
+  EXPECT_GE(corrupt, 5);
+  EXPECT_TRUE(receiver.whole == 0 || receiver.damaged == 0) << receiver.whole << " pairs of one picture's eyes, " << receiver.damaged << " of two";
+}
+
+TEST(Bumblebee, OneOfTwoCamerasUnplugged) {
+  const test::GigeLock lock;
+  Receiver receiver;
+  TwoCameras cameras({receiver.sent.front()});
+  ASSERT_EQ(cameras.eyes.size(), 2U);
+  const auto source = make_bumblebee_source(TwoCameras::options(), receiver.to_frame());
+  ASSERT_TRUE(source->open());
+  Result<Frame> frame = failure(ErrorCode::kTimeout, "");
+  for (int i = 0; i < 50 && !frame; ++i) frame = source->grab(2s);
+  ASSERT_TRUE(frame) << frame.error().what;
+  cameras.eyes.pop_back();
+  for (int i = 0; i < 20 && frame; ++i) frame = source->grab(500ms);  // what was under way
+  EXPECT_FALSE(frame) << "no frame of one eye";
 }
 
 TEST(Bumblebee, TwoDevicesNeedTwoNames) {

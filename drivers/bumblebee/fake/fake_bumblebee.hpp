@@ -5,35 +5,29 @@
 #include <string>
 #include <vector>
 
+#include "bumblebee/fake/gige_camera.hpp"
 #include "gfp/core/error.hpp"
 #include "gfp/frame/stereo_pair.hpp"
 
 namespace gfp {
 
 struct FakeBumblebeeOptions {
-  std::string address = "127.0.0.1";
-  std::string serial = "GFPBB01";
-  double rate_hz = 30;
-  double lost_packets = 0;  ///< Share of the packets that are not sent.
+  GigeCameraOptions camera;
+  std::string layout = "interleaved";  ///< `interleaved`: Mono16, the right eye's byte first; `stacked`: Mono8, the left picture above the right one; `parts`: the same as two parts; `left`, `right`: one eye, Mono8.
 };
 
-/// A camera of Aravis' making on a real network interface (GVCP and GVSP over UDP) that sends the given pairs in turn, as byte-interleaved Mono16, the right
-/// eye's byte first. Lives on a thread of its own; one an address.
+/// A stereo camera, or one of its eyes, on a real network interface that sends the given pairs in turn.
 class FakeBumblebee {
  public:
-  /// Pairs of equal size. Errors: kInvalidArgument (none, or of different sizes), kIo (the address or its port 3956 cannot be had).
+  /// Pairs of equal size. Errors: kInvalidArgument (none, of different sizes, another layout), kIo (the address or its port 3956 cannot be had).
   static Result<std::unique_ptr<FakeBumblebee>> start(const std::vector<StereoPair>& pairs, const FakeBumblebeeOptions& options = {});
-  ~FakeBumblebee();  ///< As if it were unplugged.
-  FakeBumblebee(const FakeBumblebee&) = delete;
-  FakeBumblebee& operator=(const FakeBumblebee&) = delete;
 
-  std::uint64_t sent() const;  ///< Pictures, whole or not. Safe from any thread.
-
-  struct Show;
+  std::uint64_t sent() const { return camera_->sent(); }      ///< Pictures, whole or not. Safe from any thread.
+  std::uint64_t resent() const { return camera_->resent(); }  ///< Packets that were sent again. Safe from any thread.
 
  private:
-  FakeBumblebee();
-  std::unique_ptr<Show> show_;
+  explicit FakeBumblebee(std::unique_ptr<GigeCamera> camera) : camera_(std::move(camera)) {}
+  std::unique_ptr<GigeCamera> camera_;
 };
 
 }  // namespace gfp

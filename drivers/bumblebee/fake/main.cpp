@@ -1,5 +1,6 @@
 // gfp_fake_bumblebee: a stereo camera on the network that shows a synthetic table. Writes the calibration that belongs to it.
-//   gfp_fake_bumblebee CALIBRATION.yaml [SEED [OBJECTS [LOST_PACKETS_PER_MILLE]]]
+//   gfp_fake_bumblebee CALIBRATION.yaml [SEED [OBJECTS [LOST_PACKETS_PER_MILLE [LAYOUT]]]]
+// LAYOUT: interleaved, stacked, parts (bumblebee.layout: stacked), or two_devices, which is a camera an eye, on 127.0.0.1 and 127.0.0.2.
 #include <csignal>
 
 #include <fmt/format.h>
@@ -14,14 +15,21 @@
 
 int main(int argc, char** argv) {
   if (argc < 2) {
-    std::cerr << "usage: gfp_fake_bumblebee CALIBRATION.yaml [SEED [OBJECTS [LOST_PACKETS_PER_MILLE]]]\n";
+    std::cerr << "usage: gfp_fake_bumblebee CALIBRATION.yaml [SEED [OBJECTS [LOST_PACKETS_PER_MILLE [LAYOUT]]]]\n";
     return 64;
   }
   const std::uint64_t seed = argc > 2 ? std::strtoull(argv[2], nullptr, 10) : 7;
   gfp::TableTopOptions table;
   if (argc > 3) table.objects = static_cast<int>(std::strtol(argv[3], nullptr, 10));
   gfp::FakeBumblebeeOptions options;
-  if (argc > 4) options.lost_packets = 1e-3 * std::strtod(argv[4], nullptr);
+  if (argc > 4) options.camera.lost_packets = 1e-3 * std::strtod(argv[4], nullptr);
+  if (argc > 5) options.layout = argv[5];
+  std::vector<gfp::FakeBumblebeeOptions> cameras(1, options);
+  if (options.layout == "two_devices") {
+    cameras.assign(2, options);
+    cameras[0].layout = "left", cameras[1].layout = "right";
+    cameras[1].camera.serial = "GFPBB02", cameras[1].camera.address = "127.0.0.2";
+  }
 
   sigset_t signals;  // before the camera's thread begins, so that it inherits the mask
   sigemptyset(&signals);
@@ -34,15 +42,19 @@ int main(int argc, char** argv) {
   const gfp::Transform T_world_camera = gfp::look_at_pose({0, 0, 0.05}, 0.9, 0.7, -1.57);
   std::vector<gfp::StereoPair> pairs;
   for (std::uint64_t i = 0; i < kPictures; ++i) pairs.push_back(gfp::textured_pair(gfp::table_top_scene(table, seed), camera, kBaseline_m, T_world_camera, 2.0, i));
-  const auto fake = gfp::FakeBumblebee::start(pairs, options);
-  if (!fake) {
-    std::cerr << "gfp_fake_bumblebee: " << fake.error().what << "\n";
-    return 71;
+  std::vector<std::unique_ptr<gfp::FakeBumblebee>> fakes;
+  for (const gfp::FakeBumblebeeOptions& one : cameras) {
+    auto fake = gfp::FakeBumblebee::start(pairs, one);
+    if (!fake) {
+      std::cerr << "gfp_fake_bumblebee: " << fake.error().what << "\n";
+      return 71;
+    }
+    fakes.push_back(std::move(*fake));
   }
   std::ofstream(argv[1]) << fmt::format(
       "%YAML:1.0\n---\nwidth: {0}\nheight: {1}\nM1: [{2}, 0, {3}, 0, {2}, {4}, 0, 0, 1]\nD1: []\nM2: [{2}, 0, {3}, 0, {2}, {4}, 0, 0, 1]\nD2: []\nR: [1, 0, 0, 0, 1, 0, 0, 0, 1]\nT: [{5}, 0, 0]\n", camera.width,
       camera.height, camera.fx, camera.cx, camera.cy, -kBaseline_m);
-  std::cout << "Aravis-" << options.serial << " on " << options.address << " at " << options.rate_hz << " Hz\n" << std::flush;
+  for (const auto& one : cameras) std::cout << "Aravis-" << one.camera.serial << " on " << one.camera.address << " at " << one.camera.rate_hz << " Hz, " << one.layout << "\n" << std::flush;
   int signal = 0;
   sigwait(&signals, &signal);
   return 0;
