@@ -16,14 +16,19 @@ constexpr int kFragmentPixels = 250;      // smaller pieces are fragments at a c
 constexpr int kFragmentShare = 12;        // and so are those below a twelfth of the other
 constexpr double kReachesSupport = 0.022; // a lower outline this near to the support stands on it
 constexpr double kSameHeight = 0.010;     // two parts of one rim, or of one box
-constexpr double kHollow = -0.0015;       // bulge of an inner wall: -2 mm for a mug, -10 mm for a bowl
+constexpr double kHollow = -0.0008;       // bulge of an inner wall: -1 mm for a cup, -10 mm for a bowl
+constexpr double kFlare = 0.025;          // a rim stands out over its own wall by no more,
+constexpr double kFlareHeight = 0.6;      // and the wall is seen from this share of the rim's height downwards
+constexpr double kSeenThrough = 0.7;      // share of the outline that something nearer surrounds,
+constexpr double kMouthShare = 0.6;       // most of it one thing
 constexpr double kHangingGap = 0.05;      // a part is no farther from what it hangs on
+constexpr double kOverhangGap = 0.12;     // what bears it is hidden by it for longer
 constexpr double kDividedGap = 0.30;      // an occluder hides no more of one object than this
 
 class Assembler {
  public:
-  Assembler(const OrganizedCloud& cloud, const PieceMap& map, const std::vector<Contact>& contacts, const SegmentationOptions& options)
-      : cloud_(cloud), map_(map), options_(options), contacts_(contacts), root_(map.pixels.size()) {
+  Assembler(const OrganizedCloud& cloud, const PieceMap& map, const std::vector<Contact>& contacts, const Eigen::Vector3d& up, const SegmentationOptions& options)
+      : cloud_(cloud), map_(map), options_(options), up_(up), contacts_(contacts), root_(map.pixels.size()) {
     for (std::size_t p = 0; p < root_.size(); ++p) root_[p] = static_cast<int>(p);
   }
 
@@ -39,6 +44,9 @@ class Assembler {
     attach_each([&](int p) { return is_fragment(p) ? strongest(p, [&](const Contact& c) { return c.touching > 0; }) : -1; });
     repeat([&](const Contact& c) { return continues(c) || encloses(c); });
     join_rims();
+    attach_each([&](int p) { return mouth_of(p); });
+    repeat([&](const Contact& c) { return overhangs(c); });
+    attach_each([&](int p) { return mouth_of(p); });
     attach_each([&](int p) { return hangs(p) ? hanging_on(p) : far_side_of(p); });
     join_rims();
     join_divided();
@@ -116,8 +124,8 @@ class Assembler {
       if (find(p) == p) order.push_back(p);
     std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return of(a).pixels < of(b).pixels; });
     for (const int p : order) {
-      if (find(p) != p) continue;
-      if (const int h = host(p); h >= 0) join(p, h);
+      const int group = find(p);  // what joined it comes along
+      if (const int h = host(group); h >= 0) join(group, h);
     }
   }
 
@@ -164,13 +172,41 @@ class Assembler {
       return both.bulge_m() < kHollow && in_front_of_both(c.first, c.second, both.top_m) >= 0;
     });
     repeat([&](const Contact& c) {
-      if (2 * std::max(c.first_nearer, c.second_nearer) < c.pairs || c.pairs < 8) return false;
+      if (2 * std::max(c.first_nearer, c.second_nearer) < c.pairs || c.pairs < 5) return false;
       const PieceShape &front = of(c.first_nearer > c.second_nearer ? c.first : c.second), &back = of(c.first_nearer > c.second_nearer ? c.second : c.first);
       if (std::abs(front.top_m - back.top_m) > kSameHeight || back.bulge_m() > kHollow) return false;
       const double across = (front.mean_point() - back.mean_point()).norm();
       return front.bulge_m() > back.bulge_m() && across <= 0.6 * options_.max_size_m;
     });
   }
+
+  /// A flared rim hides the top of the outer wall below it: nearer than the wall, and both nearly as high.
+  bool overhangs(const Contact& c) const {
+    const bool first_nearer = c.first_nearer > c.second_nearer;
+    const PieceShape &rim = of(first_nearer ? c.first : c.second), &wall = of(first_nearer ? c.second : c.first);
+    if (c.pairs < 8 || 2 * std::max(c.first_nearer, c.second_nearer) < c.pairs || c.gap_m > kFlare) return false;
+    if (rim.bulge_m() > kHollow || wall.top_m > rim.top_m || wall.top_m < kFlareHeight * rim.top_m) return false;
+    return level(wall.mean_point() - rim.mean_point()).dot(level(rim.mean_point())) < 0;  // on the camera's side of it
+  }
+
+  /// What is seen through a mouth is the inside: surrounded by what is nearer and higher, mostly by one thing, and not beside that, as what is seen through
+  /// a handle. That one thing, or -1.
+  int mouth_of(int p) const {
+    int outline = 0, hidden = 0, most = 0, mouth = -1;
+    for (const Contact& c : contacts_) {
+      if (c.first != p && c.second != p) continue;
+      const int other = c.first == p ? c.second : c.first, nearer = c.first == p ? c.second_nearer : c.first_nearer;
+      outline += c.pairs;
+      hidden += nearer;
+      if (nearer > most) most = nearer, mouth = other;
+    }
+    const int around = outline + of(p).open;
+    if (mouth < 0 || hidden < kSeenThrough * around || most < kMouthShare * around || of(mouth).top_m < of(p).top_m) return -1;
+    const Eigen::Vector3d away = level(of(mouth).mean_point()).normalized(), off = level(of(p).mean_point() - of(mouth).mean_point());
+    const double behind = off.dot(away), beside = (off - behind * away).norm();
+    return beside < 0.6 * of(mouth).spread_m() && behind < 4 * of(mouth).spread_m() ? mouth : -1;
+  }
+  Eigen::Vector3d level(const Eigen::Vector3d& v) const { return v - up_ * up_.dot(v); }
 
   // Nothing bears it: it ends above the support, and what is below its outline is farther away.
   bool hangs(int p) const { return of(p).base_m > kReachesSupport && 10 * of(p).foot_hidden < 6 * of(p).foot; }
@@ -198,6 +234,21 @@ class Assembler {
       if (of(other).pixels < of(p).pixels) continue;
       gap = c.gap_m;
       nearest = other;
+    }
+    return nearest >= 0 ? nearest : borne_by(p);
+  }
+
+  // What hangs over something on the support is borne by it: a drill's body on its grip, of which less may be seen.
+  int borne_by(int p) const {
+    int nearest = -1;
+    double gap = kOverhangGap;
+    for (const Contact& c : contacts_) {
+      if (c.gap_m >= gap || 2 * (c.first == p ? c.first_nearer : c.second == p ? c.second_nearer : 0) < c.pairs) continue;
+      const PieceShape& foot = of(c.first == p ? c.second : c.first);
+      if (foot.base_m > kReachesSupport || foot.top_m > of(p).top_m || foot.pixels < kFragmentPixels) continue;
+      if (level(foot.mean_point() - of(p).mean_point()).norm() > of(p).spread_m()) continue;
+      gap = c.gap_m;
+      nearest = c.first == p ? c.second : c.first;
     }
     return nearest;
   }
@@ -262,6 +313,7 @@ class Assembler {
   const OrganizedCloud& cloud_;
   const PieceMap& map_;
   const SegmentationOptions& options_;
+  const Eigen::Vector3d up_;
   std::vector<Contact> contacts_;
   std::vector<int> root_;
   std::vector<PieceShape> shapes_;
@@ -270,8 +322,8 @@ class Assembler {
 }  // namespace
 
 std::vector<int> assemble(const OrganizedCloud& cloud, const PieceMap& map, const std::vector<std::uint8_t>& valid,
-                          const std::vector<Contact>& contacts, const std::vector<const FlatSurface*>& supports, const SegmentationOptions& options) {
-  Assembler assembler(cloud, map, contacts, options);
+                          const std::vector<Contact>& contacts, const std::vector<const FlatSurface*>& supports, const Eigen::Vector3d& up, const SegmentationOptions& options) {
+  Assembler assembler(cloud, map, contacts, up, options);
   assembler.shape(valid, supports);
   return assembler.run();
 }

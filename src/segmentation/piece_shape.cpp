@@ -14,6 +14,17 @@ std::int32_t downwards(const FlatSurface* support, int width) {
   return support->up.x() > 0 ? -1 : 1;
 }
 
+constexpr std::int32_t kOutside = -1, kNothing = -2;
+
+/// The pixel of the next reading from pixel i; kOutside beyond the image, kNothing near.
+std::int32_t next_reading(const std::vector<std::uint8_t>& valid, int width, std::int32_t i, std::int32_t step) {
+  for (std::int32_t n = i + step, k = 1; k <= kSearchPx; ++k, n += step) {
+    if (n < 0 || n >= static_cast<std::int32_t>(valid.size()) || (std::abs(step) == 1 && n / width != i / width)) return kOutside;
+    if (valid[static_cast<std::size_t>(n)] != 0) return n;
+  }
+  return kNothing;
+}
+
 }  // namespace
 
 void PieceShape::add(const PieceShape& o) {
@@ -22,10 +33,12 @@ void PieceShape::add(const PieceShape& o) {
   top_m = std::max(top_m, o.top_m);
   foot += o.foot;
   foot_hidden += o.foot_hidden;
+  open += o.open;
   normals += o.normals;
   point += o.point;
   normal += o.normal;
   normal_dot_point += o.normal_dot_point;
+  squared_distance += o.squared_distance;
 }
 
 PieceShape piece_shape(const OrganizedCloud& cloud, const PieceMap& map, const std::vector<std::uint8_t>& valid, int piece,
@@ -34,6 +47,7 @@ PieceShape piece_shape(const OrganizedCloud& cloud, const PieceMap& map, const s
   PieceShape shape;
   shape.pixels = static_cast<int>(pixels.size());
   const std::int32_t down = downwards(support, cloud.width);
+  const auto within = [&](std::int32_t n) { return n >= 0 && n < static_cast<std::int32_t>(map.piece.size()); };  // a row's ends meet: that is as good as none
   std::vector<float> heights;
   heights.reserve(pixels.size());
   const std::size_t every = pixels.size() / 1500 + 1;  // plenty for the quantiles
@@ -47,16 +61,16 @@ PieceShape piece_shape(const OrganizedCloud& cloud, const PieceMap& map, const s
       shape.point += p;
       shape.normal += normal;
       shape.normal_dot_point += normal.dot(p);
+      shape.squared_distance += p.squaredNorm();
     }
     const double limit = 3.0 * tolerance_m * std::max(1.0, p.z() * p.z());
-    for (int step = 1; step <= kSearchPx; ++step) {
-      const std::int32_t n = i + step * down;
-      const bool outside = n < 0 || n >= static_cast<std::int32_t>(valid.size()) || (std::abs(down) == 1 && n / cloud.width != i / cloud.width);
-      if (!outside && valid[static_cast<std::size_t>(n)] == 0) continue;
-      const bool own = !outside && map.piece[static_cast<std::size_t>(n)] == piece;
-      shape.foot += !own;
-      shape.foot_hidden += outside || (!own && map.piece[static_cast<std::size_t>(n)] >= 0 && static_cast<double>(cloud.z[static_cast<std::size_t>(n)]) < p.z() - limit);
-      break;
+    for (const std::int32_t step : {1, -1, cloud.width, -cloud.width}) {
+      if (within(i + step) && map.piece[static_cast<std::size_t>(i + step)] == piece) continue;  // nearly all, so before anything that costs
+      const std::int32_t n = next_reading(valid, cloud.width, i, step), neighbour = n < 0 ? -1 : map.piece[static_cast<std::size_t>(n)];
+      shape.open += neighbour < 0;
+      if (step != down || neighbour == piece || n == kNothing) continue;
+      ++shape.foot;
+      shape.foot_hidden += n == kOutside || (neighbour >= 0 && static_cast<double>(cloud.z[static_cast<std::size_t>(n)]) < p.z() - limit);
     }
   }
   const auto quantile = [&](double share) {

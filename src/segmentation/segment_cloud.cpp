@@ -20,6 +20,7 @@ namespace gfp {
 namespace {
 
 constexpr double kWorkspaceDepth = 2.0;  // metres: beyond it the noise of a triangulating sensor is a centimetre and more
+constexpr double kClearOfBand = 1.2;    // a rough or distant support has bumps higher than its band: what stands on it is clearly higher
 constexpr int kWorthNaming = 60;  // pixels: fewer are noise that nobody wants to read about
 
 struct Candidate {
@@ -61,9 +62,10 @@ std::string reject_reason(const OrganizedCloud& cloud, const Supports& supports,
     far += static_cast<double>(cloud.z[static_cast<std::size_t>(i)]) > kWorkspaceDepth;
     outside += support->inside(cloud.point(static_cast<std::size_t>(i)).cast<double>()) < 0;
   }
-  const auto nth = heights.begin() + static_cast<std::ptrdiff_t>(0.95 * static_cast<double>(heights.size()));
+  const auto nth = heights.begin() + static_cast<std::ptrdiff_t>(0.98 * static_cast<double>(heights.size()));
   std::nth_element(heights.begin(), nth, heights.end());
-  if (*nth < options.min_height_m) return "too_flat";
+  const double z = static_cast<double>(cloud.z[static_cast<std::size_t>(candidate.pixels[candidate.pixels.size() / 2])]);
+  if (*nth < std::max(options.min_height_m, kClearOfBand * support->band(z))) return "too_flat";
   if (2 * std::max(outside, far) > static_cast<int>(heights.size())) return "outside_workspace";
   return {};
 }
@@ -142,7 +144,7 @@ std::vector<Candidate> objects_of(const OrganizedCloud& cloud, const Segmentatio
     const int s = support[static_cast<std::size_t>(cluster)];
     surfaces.push_back(s < 0 ? nullptr : &supports.surfaces[static_cast<std::size_t>(s)]);
   }
-  const auto object = assemble(cloud, map, valid, contacts, surfaces, options);
+  const auto object = assemble(cloud, map, valid, contacts, surfaces, up, options);
   std::vector<Candidate> candidates(object.empty() ? 0 : static_cast<std::size_t>(*std::max_element(object.begin(), object.end())) + 1);
   for (std::size_t p = 0; p < object.size(); ++p) {
     PixelList& pixels = candidates[static_cast<std::size_t>(object[p])].pixels;

@@ -228,7 +228,7 @@ TEST(DaemonControl, ParametersHoldFromTheNextFrameOn) {
   auto client = ControlClient::connect(bench.control());
   const auto before = client->parameters({"pipeline.segmentation."});
   ASSERT_TRUE(before.has_value()) << before.error().what;
-  EXPECT_EQ(before->at("pipeline.segmentation.min_height_m"), "0.01");
+  EXPECT_EQ(before->at("pipeline.segmentation.min_height_m"), "0.007");
   const auto after = client->set_parameters({{"pipeline.segmentation.min_height_m", "0.02"}});
   ASSERT_TRUE(after.has_value()) << after.error().what;
   EXPECT_EQ(*after, (std::map<std::string, std::string>{{"pipeline.segmentation.min_height_m", "0.02"}}));

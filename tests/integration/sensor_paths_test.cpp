@@ -188,7 +188,9 @@ TEST_F(SensorPaths, BumblebeeOverTheNetwork) {
   constexpr double kBaseline_m = 0.12;
   const SyntheticSource source(scene_options());
   const CameraModel camera = default_kinect_camera();
-  const auto fake = FakeBumblebee::start({textured_pair(source.scene(), camera, kBaseline_m, truth_->T_world_camera, 2.0, 1)});
+  const std::vector<StereoPair> pictures{textured_pair(source.scene(), camera, kBaseline_m, truth_->T_world_camera, 2.0, 1)};
+  const FakeBumblebeeOptions by_default;
+  const auto fake = FakeBumblebee::start(pictures, by_default);
   ASSERT_TRUE(fake) << fake.error().what;
   auto rectifier = StereoRectifier::make(calibration_of_pair(camera, kBaseline_m, truth_->T_world_camera));
   ASSERT_TRUE(rectifier) << rectifier.error().what;

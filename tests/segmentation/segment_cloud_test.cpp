@@ -145,7 +145,7 @@ TEST(SegmentCloud, KeepsHollowThingsWhole) {
   }
 }
 
-/// How well the mesh is covered where it stands alone on a virtual table, seen from this elevation.
+/// How well the mesh is covered where it stands alone on a virtual table, seen from this elevation. Its outline has no readings: a twentieth to a tenth.
 double overlap_on_table(const TriangleMesh& mesh, double elevation_rad) {
   VirtualScene scene;
   scene.objects.push_back({.name = "thing", .class_name = "thing", .mesh = mesh});
@@ -157,6 +157,35 @@ double overlap_on_table(const TriangleMesh& mesh, double elevation_rad) {
 TEST(SegmentCloud, ThePlateHasAMiddle) {
   const TriangleMesh plate = test::revolve({{0.08, 0}, {0.13, 0.022}, {0.13, 0.025}, {0.09, 0.012}, {0.08, 0.0025}}, 64);
   for (const double elevation_rad : {0.6, 0.8, 1.0}) EXPECT_GT(overlap_on_table(plate, elevation_rad), 0.9) << elevation_rad;
+}
+
+// From above a flared rim hides the top of the wall below it.
+TEST(SegmentCloud, AFlaredRimBelongsToItsWall) {
+  const TriangleMesh mug = test::revolve({{0.030, 0}, {0.033, 0.068}, {0.044, 0.080}, {0.041, 0.081}, {0.030, 0.068}, {0.026, 0.006}}, 64);
+  for (const double elevation_rad : {0.6, 0.8, 1.0, 1.1}) EXPECT_GT(overlap_on_table(mug, elevation_rad), 0.85) << elevation_rad;
+}
+
+// Through a narrow mouth the inside is seen without the wall between.
+TEST(SegmentCloud, WhatIsSeenThroughAMouthIsTheInside) {
+  const TriangleMesh vase = test::revolve({{0.05, 0}, {0.09, 0.10}, {0.06, 0.20}, {0.050, 0.22}, {0.065, 0.25}, {0.062, 0.25}, {0.046, 0.22}, {0.056, 0.20}, {0.086, 0.10}, {0.046, 0.01}}, 64);
+  for (const double elevation_rad : {0.6, 0.8, 1.0, 1.1}) EXPECT_GT(overlap_on_table(vase, elevation_rad), 0.85) << elevation_rad;
+}
+
+// A body on a narrower grip overhangs it.
+TEST(SegmentCloud, WhatOverhangsStandsOnWhatIsBelow) {
+  const TriangleMesh tee = test::revolve({{0.025, 0}, {0.022, 0.10}, {0.05, 0.105}, {0.05, 0.16}}, 64);
+  for (const double elevation_rad : {0.6, 0.8, 1.0}) EXPECT_GT(overlap_on_table(tee, elevation_rad), 0.85) << elevation_rad;
+}
+
+// A box that shows on all sides of a nearer one is not the inside of that.
+TEST(SegmentCloud, WhatShowsAllAroundIsBehind) {
+  ToyScene scene;
+  scene.boxes.push_back({{-0.07, -0.10, 0.0}, {0.07, -0.05, 0.20}, 0.0});
+  scene.boxes.push_back({{-0.11, 0.03, 0.0}, {0.11, 0.07, 0.26}, 0.0});
+  const auto seen = test::view(scene, 1.0, 1);
+  const Segments segments = segment_cloud(seen.cloud);
+  EXPECT_EQ(segments.segments.size(), 2U);
+  for (const int box : {0, 1}) EXPECT_GT(best_overlap(segments, seen.truth, box), 0.9) << box;
 }
 
 TEST(SegmentCloud, InsideARingIsTheTable) {

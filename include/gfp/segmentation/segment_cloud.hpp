@@ -13,7 +13,7 @@ struct SegmentationOptions {
   double cluster_tolerance_m = 0.010;  ///< Neighbouring pixels of one object differ by less in depth at 1 m and nearer (times z^2 beyond); gaps without readings are bridged as far.
   double edge_margin_m = 0.02;         ///< Objects may stand out over the edge of the seen surface by this much.
   int min_points = 300;                ///< Smaller clusters are rejected (`too_small`).
-  double min_height_m = 0.010;         ///< Flatter clusters are rejected (`too_flat`).
+  double min_height_m = 0.007;         ///< Flatter clusters are rejected (`too_flat`).
   double max_height_m = 0.60;          ///< Nothing higher above its support belongs to an object.
   double max_size_m = 0.60;            ///< Larger clusters are rejected (`too_large`); level surfaces up to this size are faces of objects.
   double max_depth_m = 4.0;            ///< Farther readings are not looked at.
