@@ -17,6 +17,7 @@ Asking instead of listening: Control().snapshot(), .fit(), .best_grasp(), .param
 Metres and radians; camera frame x right, y down, z forward; T_a_b maps b coordinates into a (4x4).
 """
 
+import contextlib
 import ctypes
 import dataclasses
 import os
@@ -323,10 +324,15 @@ class Control:
         self._socket.close()
 
 
-if __name__ == "__main__":
+def _print_scenes():
     for scene in SceneSubscriber():
         print(f"{scene.header.sensor} frame {scene.header.sequence}, {1e3 * scene.age_s:.1f} ms old")
         for thing in scene.objects:
             mesh = "mesh to come" if thing.triangles is None else f"{len(thing.vertices)} vertices, {len(thing.triangles)} triangles"
             best = f"grasp {1e3 * thing.grasps[0].width_m:.0f} mm wide" if thing.grasps else thing.no_grasp_reason
             print(f"  {thing.id:4} {thing.class_name:14} at {thing.T_camera_object[:3, 3].round(3)}  {mesh}, {best}")
+
+
+if __name__ == "__main__":
+    with contextlib.suppress(KeyboardInterrupt):  # how it is told to end
+        _print_scenes()

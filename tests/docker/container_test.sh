@@ -41,7 +41,7 @@ chown 10001:10001 "$sockets"
 run=(podman "${store[@]}" --runtime /usr/sbin/runc --cgroup-manager cgroupfs)
 limits=(--ulimit nofile=1024:1024 --ulimit nproc=1000:1000 --cap-drop ALL --read-only -v "$sockets:/run/gfp")
 name=gfp-test-$$
-end() { "${run[@]}" rm -f "$name" >/dev/null 2>&1 || true; rm -rf "$sockets"; }
+end() { "${run[@]}" rm -f "$name" "$name-example" >/dev/null 2>&1 || true; rm -rf "$sockets"; }
 trap end EXIT
 port=$("$python3" -c 'import socket; s = socket.socket(); s.bind(("127.0.0.1", 0)); print(s.getsockname()[1])')
 "${run[@]}" run -d --name "$name" --network host "${limits[@]}" localhost/gfp:test --config /etc/gfp/demo.yaml --set "view.port=$port" >/dev/null
@@ -52,8 +52,15 @@ PYTHONPATH=clients/python PYTHONDONTWRITEBYTECODE=1 "$python3" tests/docker/subs
 "$python3" tests/docker/page.py "http://127.0.0.1:$port/" || fail "the container serves no page"
 [ "$("${run[@]}" exec "$name" id -u)" = 10001 ] || fail "the service runs as another user than 10001"
 "${run[@]}" exec "$name" gfp echo /gfp/status/gfpd/ --count 1 --seconds 5 >/dev/null || fail "the health check fails while the daemon publishes"
-"${run[@]}" run --rm --network none "${limits[@]}" --entrypoint timeout localhost/gfp-subscriber:test 20 python3 -u /opt/gfp/gfp_client.py >"$sockets/example.log" || true
-grep -q "triangles" "$sockets/example.log" || fail "the example subscriber in its own container saw no mesh"
+"${run[@]}" run -d --name "$name-example" --network none "${limits[@]}" localhost/gfp-subscriber:test >/dev/null
+for ((tries = 0; tries < 60; ++tries)); do
+  grep -q triangles <<<"$("${run[@]}" logs "$name-example" 2>&1)" && break
+  sleep 0.5
+done
+grep -q triangles <<<"$("${run[@]}" logs "$name-example" 2>&1)" || fail "the example subscriber in its own container saw no mesh"
+"${run[@]}" stop -t 10 "$name-example" >/dev/null
+code=$("${run[@]}" inspect --format '{{.State.ExitCode}}' "$name-example")
+[ "$code" = 0 ] || fail "the image's stop signal ended the example subscriber with $code, expected 0 (137: it had to be killed)"
 
 "${run[@]}" stop -t 10 "$name" >/dev/null
 code=$("${run[@]}" inspect --format '{{.State.ExitCode}}' "$name")
