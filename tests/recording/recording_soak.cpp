@@ -1,5 +1,4 @@
-// Kills, rotten bits, refused writes and power losses of recordings, in great numbers. The ledger has a line for every block of trials:
-// {"kind": "kill", "first": 0, "count": 20, "lost_messages_max": 31, ...}; a run goes on behind the last one and ends at the first failure.
+// Kills, rotten bits, refused writes and power losses of recordings, in great numbers.
 #include <sys/mman.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -8,29 +7,21 @@
 
 #include <atomic>
 #include <csignal>
-#include <fstream>
 #include <functional>
-#include <iostream>
-#include <nlohmann/json.hpp>
 
 #include "gfp/core/time.hpp"
 #include "gfp/recording/recording_series.hpp"
 #include "gfp/recording/repair.hpp"
 #include "recording/sample_recording.hpp"
+#include "support/soak_ledger.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace gfp {
 namespace {
 
-using nlohmann::ordered_json;
+using test::Trial;
 
 constexpr std::uint32_t kSamples = 3000;
-
-/// What a trial found; `failure` is empty where all is as promised.
-struct Trial {
-  std::string failure;
-  std::map<std::string, std::uint64_t> largest;  ///< Of what is counted, the largest of a block goes into the ledger.
-};
 
 const McapChannelSpec kSpecs[3] = {{"/one/", "test", "a", "text", std::string(300, 'a'), {}}, {"/two/", "test", "b", "text", "b", {}}, {"/three/", "test", "c", "text", "c", {}}};
 
@@ -93,7 +84,8 @@ Trial kill_trial(std::uint64_t seed) {
   recover_recordings(folder / "r", "gfp");
   const auto found = read_folder(folder / "r", trial.failure);
   if (found.size() < shared->written) trial.failure = std::to_string(shared->written - found.size()) + " written messages are gone";
-  trial.largest = {{"messages_max", found.size()}, {"lost_messages_max", shared->handed - std::min<std::uint64_t>(shared->handed, found.size())}};
+  trial.measured("messages_max", found.size());
+  trial.measured("lost_messages_max", shared->handed - std::min<std::uint64_t>(shared->handed, found.size()));
   munmap(shared, sizeof(Shared));
   return trial;
 }
@@ -137,7 +129,7 @@ Trial flip_trial(std::uint64_t seed) {
     }
   }
   if (!trial.failure.empty()) trial.failure += ", byte " + std::to_string(at);
-  trial.largest = {{"lost_messages_max", lost}};
+  trial.measured("lost_messages_max", lost);
   return trial;
 }
 
@@ -198,7 +190,7 @@ Trial write_trial(std::uint64_t number) {
   if (found + series.status().lost_messages != kMessages) trial.failure = "of " + std::to_string(kMessages) + " messages " + std::to_string(found) + " are there and " + std::to_string(series.status().lost_messages) + " counted as lost";
   if (series.status().write_errors == 0) trial.failure = "the refused write was not counted";
   if (series.status().lost_messages > 21) trial.failure = std::to_string(series.status().lost_messages) + " messages lost by one write";
-  trial.largest = {{"lost_messages_max", series.status().lost_messages}};
+  trial.measured("lost_messages_max", series.status().lost_messages);
   return trial;
 }
 
@@ -294,37 +286,9 @@ Trial power_trial(std::uint64_t seed) {
   for (std::uint32_t i = 0; i < durable; ++i)
     if (!found.contains(i)) trial.failure = "message " + std::to_string(i) + " of " + std::to_string(durable) + " that were synchronised is gone";
   if (!trial.failure.empty()) trial.failure += ", power lost after " + std::to_string(prefix) + " of " + std::to_string(kTrace.size()) + " requests";
-  trial.largest = {{"messages_max", found.size()}, {"unsynchronised_writes_max", loose.size()}};
+  trial.measured("messages_max", found.size());
+  trial.measured("unsynchronised_writes_max", loose.size());
   return trial;
-}
-
-std::uint64_t done_in(const std::string& ledger, const std::string& kind) {
-  std::ifstream in(ledger);
-  std::uint64_t done = 0;
-  for (std::string line; std::getline(in, line);) {
-    const auto entry = ordered_json::parse(line, nullptr, false);
-    if (entry.is_object() && entry.value("kind", "") == kind && entry.value("failure", "").empty()) done += entry.value("count", std::uint64_t{0});
-  }
-  return done;
-}
-
-bool run_kind(const std::string& ledger, const std::string& kind, std::uint64_t wanted, Trial (*trial_of)(std::uint64_t)) {
-  constexpr std::uint64_t kBlock = 20;
-  for (std::uint64_t first = done_in(ledger, kind); first < wanted; first += kBlock) {
-    const std::uint64_t count = std::min(kBlock, wanted - first);
-    ordered_json entry = {{"kind", kind}, {"first", first}, {"count", count}};
-    std::string failure;
-    for (std::uint64_t i = first; i < first + count && failure.empty(); ++i) {
-      const Trial trial = trial_of(i);
-      if (!trial.failure.empty()) failure = kind + " " + std::to_string(i) + ": " + trial.failure;
-      for (const auto& [name, value] : trial.largest) entry[name] = std::max(entry.value(name, std::uint64_t{0}), value);
-    }
-    if (!failure.empty()) entry["failure"] = failure;
-    std::ofstream(ledger, std::ios::app) << entry.dump() << std::endl;
-    if (!failure.empty()) return std::cerr << failure << "\n", false;
-  }
-  std::cout << kind << ": " << done_in(ledger, kind) << " as promised\n";
-  return true;
 }
 
 }  // namespace
@@ -340,7 +304,8 @@ int main(int argc, char** argv) {
   app.add_option("--writes", writes);
   app.add_option("--powers", powers);
   CLI11_PARSE(app, argc, argv);
-  const bool sound = gfp::run_kind(ledger, "kill", kills, gfp::kill_trial) && gfp::run_kind(ledger, "flip", flips, gfp::flip_trial) &&
-                     gfp::run_kind(ledger, "write", writes, gfp::write_trial) && gfp::run_kind(ledger, "power", powers, gfp::power_trial);
+  const gfp::test::SoakLedger soak(ledger);
+  const bool sound = soak.run("kill", kills, gfp::kill_trial) && soak.run("flip", flips, gfp::flip_trial) && soak.run("write", writes, gfp::write_trial) &&
+                     soak.run("power", powers, gfp::power_trial);
   return sound ? 0 : 1;
 }
