@@ -92,7 +92,7 @@ class Curve:
 
 def _open_socket(kind, curve):
     socket = zmq.Context.instance().socket(kind)
-    for option, value in ((zmq.LINGER, 0), (zmq.HEARTBEAT_IVL, 1000), (zmq.HEARTBEAT_TIMEOUT, 3000), (zmq.RECONNECT_IVL_MAX, 1000), (zmq.IPV6, 1)):
+    for option, value in ((zmq.LINGER, 0), (zmq.HEARTBEAT_IVL, 1000), (zmq.HEARTBEAT_TIMEOUT, 3000), (zmq.HEARTBEAT_TTL, 10_000), (zmq.RECONNECT_IVL_MAX, 1000), (zmq.IPV6, 1)):
         socket.setsockopt(option, value)
     if curve is not None:
         curve.apply(socket)

@@ -13,6 +13,7 @@ inline Result<void> prepare_client(zmq::socket_t& socket, const CurveAccess& cur
   socket.set(zmq::sockopt::reconnect_ivl_max, 1000);
   socket.set(zmq::sockopt::heartbeat_ivl, 1000);
   socket.set(zmq::sockopt::heartbeat_timeout, 3000);
+  socket.set(zmq::sockopt::heartbeat_ttl, 10'000);  // a daemon that hears nothing for so long lets go of us, even where it cannot send us a word
   socket.set(zmq::sockopt::ipv6, true);
   if (curve.server_public_key.empty()) return {};
   constexpr std::size_t kLength = 40;

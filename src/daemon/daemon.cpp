@@ -145,6 +145,7 @@ bool Daemon::is_responsive() const {
 }
 
 void Daemon::tick() {
+  for (const Refusal& refusal : publisher_->take_refusals()) spdlog::warn("refused {} connection(s) from {}: {}", refusal.count, refusal.peer, refusal.why);
   MutexLock lock(mutex_);
   for (const auto& [name, sensor] : sensors_) {
     sensor->statistics().turn(monotonic_now());

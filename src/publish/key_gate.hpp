@@ -22,8 +22,6 @@ class KeyGate {
   static Result<std::unique_ptr<KeyGate>> open(zmq::context_t& context, std::filesystem::path folder);
   ~KeyGate();  ///< Shuts the context down: close the other sockets' work before.
 
-  std::uint64_t refused() const { return refused_; }
-
   /// Whether, since the last call, a key was taken away that had been let in: its connections still stand. Safe from any thread.
   bool take_revoked() { return revoked_.exchange(false); }
 
@@ -43,7 +41,6 @@ class KeyGate {
   zmq::socket_t socket_;
   std::set<std::string> keys_, let_in_;  ///< Z85. The thread's own.
   Nanoseconds read_{-kReadAgain};
-  std::atomic<std::uint64_t> refused_ = 0;
   std::atomic<bool> revoked_ = false;
   std::jthread thread_;  ///< Last: it uses all of the above.
 };

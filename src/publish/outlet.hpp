@@ -38,11 +38,12 @@ class Outlet {
     return found == next_seq_.end() ? 0 : found->second;
   }
 
-  /// Takes in waiting subscriptions; calls `joined(prefix)` for each new one.
+  /// Takes in waiting subscriptions; calls `joined(prefix)` for each new one, and tells the guard whose they are.
   template <class Joined>
-  void read_subscriptions(Joined&& joined) {
+  void read_subscriptions(ConnectionGuard& guard, Joined&& joined) {
     zmq::message_t message;
     while (socket_.socket.recv(message, zmq::recv_flags::dontwait)) {
+      if (message.size() > 0) guard.subscribed(zmq_msg_get(message.handle(), ZMQ_SRCFD), *message.data<char>() == 1);
       const std::string prefix = demand_.update({message.data<std::byte>(), message.size()});
       if (!prefix.empty()) joined(prefix);
     }

@@ -23,6 +23,8 @@ std::vector<std::string> or_default(const std::vector<std::string>& given, const
 Result<Publisher::Sockets> Publisher::open_sockets(const PublishOptions& options) {
   Sockets sockets;
   sockets.context = std::make_unique<zmq::context_t>(1);
+  sockets.guard = std::make_unique<ConnectionGuard>(options.max_connections);
+  ConnectionGuard* const guard = sockets.guard.get();
   CurveKey key;
   if (!options.curve_key.empty()) {
     auto read = read_curve_key(options.curve_key);
@@ -45,13 +47,13 @@ Result<Publisher::Sockets> Publisher::open_sockets(const PublishOptions& options
   const auto first_remote = std::stable_partition(local.begin(), local.end(), [](const std::string& endpoint) { return !is_remote(endpoint); });
   const std::vector<std::string> remote(first_remote, local.end());
   local.erase(first_remote, local.end());
-  const SocketOptions sensor_options{options.sensor_high_water_mark, kMaxSubscriptionBytes, curve};
+  const SocketOptions sensor_options{options.sensor_high_water_mark, kMaxSubscriptionBytes, guard, curve};
   if (auto made = bind(sockets.sensor, Type::xpub, local, sensor_options); !made) return tl::unexpected(made.error());
   if (!remote.empty())
     if (auto made = bind(sockets.remote_sensor.emplace(), Type::xpub, remote, sensor_options); !made) return tl::unexpected(made.error());
-  if (auto made = bind(sockets.state, Type::xpub, or_default(options.state_endpoints, "state"), {options.state_high_water_mark, kMaxSubscriptionBytes, curve}); !made)
+  if (auto made = bind(sockets.state, Type::xpub, or_default(options.state_endpoints, "state"), {options.state_high_water_mark, kMaxSubscriptionBytes, guard, curve}); !made)
     return tl::unexpected(made.error());
-  if (auto made = bind(sockets.control, Type::router, or_default(options.control_endpoints, "control"), {ControlSocket::kHighWaterMark, ControlSocket::kMaxRequestBytes, curve}); !made)
+  if (auto made = bind(sockets.control, Type::router, or_default(options.control_endpoints, "control"), {ControlSocket::kHighWaterMark, ControlSocket::kMaxRequestBytes, guard, curve}); !made)
     return tl::unexpected(made.error());
   return sockets;
 }
@@ -74,6 +76,7 @@ Publisher::Publisher(const PublishOptions& options, std::uint64_t session, Contr
       remote_sensor_(sockets.remote_sensor ? std::optional<Outlet>(std::in_place, std::move(*sockets.remote_sensor), session) : std::nullopt),
       control_(std::move(sockets.control)),
       gate_(std::move(sockets.gate)),
+      guard_(std::move(sockets.guard)),
       thread_([this](const std::stop_token& stop) { run(stop); }) {}
 
 Publisher::~Publisher() { stop(); }
@@ -93,15 +96,17 @@ void Publisher::run(const std::stop_token& stop) {
                                         {control_.socket().handle(), 0, ZMQ_POLLIN, 0},
                                         {nullptr, inbox_.wake_file(), ZMQ_POLLIN, 0}};
   if (remote_sensor_) items.push_back({remote_sensor_->socket().handle(), 0, ZMQ_POLLIN, 0});
+  for (zmq::socket_t* monitor : guard_->monitors()) items.push_back({monitor->handle(), 0, ZMQ_POLLIN, 0});
   while (!stop.stop_requested()) {
     cut_revoked();
     Nanoseconds next = serve_at_ ? std::min(*serve_at_, next_heartbeat) : next_heartbeat;
     if (is_cut_) next = std::min(next, monotonic_now() + kBindAgain);
     const auto wait = std::max(Nanoseconds(0), next - monotonic_now());
     zmq::poll(items, std::chrono::duration_cast<std::chrono::milliseconds>(wait) + std::chrono::milliseconds(1));
-    sensor_.read_subscriptions([](const std::string&) {});
-    if (remote_sensor_) remote_sensor_->read_subscriptions([](const std::string&) {});
-    state_.read_subscriptions([this](const std::string& prefix) { joined(prefix); });
+    guard_->read();  // before the subscriptions, which it is told of
+    sensor_.read_subscriptions(*guard_, [](const std::string&) {});
+    if (remote_sensor_) remote_sensor_->read_subscriptions(*guard_, [](const std::string&) {});
+    state_.read_subscriptions(*guard_, [this](const std::string& prefix) { joined(prefix); });
     send_content();
     control_.read([this](PeerRequest request) { take_request(std::move(request)); });
     if (serve_at_ && monotonic_now() >= *serve_at_) serve_late_joiners();
@@ -181,7 +186,11 @@ void Publisher::take_scene(const Latest<ScenePtr>& latest, const std::set<std::u
   LastScene& last = last_scenes_[scene.sensor];
   const bool is_history = last.scene && last.scene->sequence > scene.sequence && last.scene->stamps.monotonic >= scene.stamps.monotonic;
   if (is_history) return;  // finished out of order
-  last = {latest.value, monotonic_now()};
+  last.scene = latest.value;
+  last.sent = monotonic_now();
+  for (const std::uint64_t id : lost) last.lost[id] = last.sent;
+  for (const SceneObject& object : scene.objects) last.lost.erase(object.id);
+  std::erase_if(last.lost, [&](const auto& entry) { return last.sent - entry.second > kTellLost; });
   ++scenes_;
   dropped_ += latest.dropped;
   for (const SceneObject& object : scene.objects) send_topology(object.model);
@@ -195,16 +204,22 @@ void Publisher::send_scene(const Scene& scene, std::uint64_t dropped, const std:
     state_.send(std::string(wire::kSceneTopic), message, scene.stamps, dropped);
   }
   if (!state_.demand().wants_below(wire::kObjectsPrefix)) return;
-  const auto send_object = [&](std::uint64_t id, const auto& fill) {
-    const std::string topic = wire::object_topic(id);
-    if (!state_.demand().wants(topic)) return;
+  for (const SceneObject& object : scene.objects) {
+    const std::string topic = wire::object_topic(object.id);
+    if (!state_.demand().wants(topic)) continue;
     v1::ObjectUpdate message;
-    fill(message);
+    wire::fill(scene, object, coding_, message);
     state_.send(topic, message, scene.stamps);
-  };
-  for (const SceneObject& object : scene.objects)
-    send_object(object.id, [&](v1::ObjectUpdate& message) { wire::fill(scene, object, coding_, message); });
-  for (const std::uint64_t id : lost) send_object(id, [&](v1::ObjectUpdate& message) { wire::fill_lost(scene, id, message); });
+  }
+  for (const std::uint64_t id : lost) send_lost(scene, id);
+}
+
+void Publisher::send_lost(const Scene& scene, std::uint64_t id) {
+  const std::string topic = wire::object_topic(id);
+  if (!state_.demand().wants(topic)) return;
+  v1::ObjectUpdate message;
+  wire::fill_lost(scene, id, message);
+  state_.send(topic, message, scene.stamps);
 }
 
 void Publisher::send_shadow(const Latest<ScenePtr>& shadow) {
@@ -269,11 +284,13 @@ v1::DaemonStatus Publisher::daemon_status(const char* state) const {
   status.set_bytes(sensor_.bytes() + state_.bytes() + remote([](const Outlet& outlet) { return outlet.bytes(); }));
   status.set_dropped(dropped_);
   status.set_subscriptions(static_cast<std::uint32_t>(sensor_.demand().size() + state_.demand().size() + remote([](const Outlet& outlet) { return outlet.demand().size(); })));
-  if (gate_) status.set_refused(gate_->refused());
+  status.set_refused(guard_->refused());
+  status.set_connections(static_cast<std::uint32_t>(guard_->connections()));
   return status;
 }
 
 void Publisher::heartbeat() {
+  guard_->prune();
   send_daemon_status("running");
   send_topologies(wire::kMeshPrefix);
   for (const auto& [name, status] : statuses_)
@@ -291,6 +308,8 @@ void Publisher::joined(const std::string& prefix) {
 void Publisher::serve_late_joiners() {
   send_topologies(wire::kMeshPrefix);
   repeat_scenes(joined_);  // a scene that was sent since then has reached them
+  for (const auto& [name, last] : last_scenes_)
+    for (const auto& [id, since] : last.lost) send_lost(*last.scene, id);
   served_ = monotonic_now();
   serve_at_.reset();
 }

@@ -56,6 +56,9 @@ class Publisher {
     inbox_.put_shadow(std::move(scene), dropped);
   }
 
+  /// Who was refused or cut off since the last call. Safe from any thread.
+  std::vector<Refusal> take_refusals() { return guard_->take_refusals(); }
+
   /// Sends what waits and the daemon's last status, then closes the sockets (up to half a second for slow subscribers).
   void stop();
 
@@ -65,6 +68,7 @@ class Publisher {
     std::unique_ptr<KeyGate> gate;  ///< Empty: tcp is open to everybody, or to nobody.
     BoundSocket sensor, state, control;
     std::optional<BoundSocket> remote_sensor;  ///< Of the sensor topics over tcp: what is sent there is coded otherwise.
+    std::unique_ptr<ConnectionGuard> guard;
   };
   static Result<Sockets> open_sockets(const PublishOptions& options);
   Publisher(const PublishOptions& options, std::uint64_t session, ControlHandler control, Sockets sockets);
@@ -76,6 +80,7 @@ class Publisher {
   void cut_revoked();
   void take_scene(const Latest<ScenePtr>& scene, const std::set<std::uint64_t>& lost);
   void send_scene(const Scene& scene, std::uint64_t dropped, const std::set<std::uint64_t>& lost);
+  void send_lost(const Scene& scene, std::uint64_t id);
   void send_shadow(const Latest<ScenePtr>& shadow);
   void repeat_scenes(Nanoseconds not_since);
   void serve_late_joiners();
@@ -103,8 +108,10 @@ class Publisher {
   struct LastScene {
     ScenePtr scene;
     Nanoseconds sent{};  ///< Monotonic.
+    std::map<std::uint64_t, Nanoseconds> lost;  ///< Ids that went within kTellLost: a late joiner's snapshot may be older than that.
   };
   static constexpr std::size_t kMaxTopologies = 256;
+  static constexpr Nanoseconds kTellLost{60'000'000'000};
   static constexpr Nanoseconds kBindAgain{20'000'000};  ///< Between attempts to have cut endpoints back.
   static constexpr Nanoseconds kMinRepeat{50'000'000};  ///< Late joiners, however many, cause no more traffic than this.
 
@@ -123,6 +130,7 @@ class Publisher {
   bool is_cut_ = false;  ///< Remote endpoints wait to be bound again.
   ControlSocket control_;
   std::unique_ptr<KeyGate> gate_;  ///< After the sockets: it ends the context's work before they close.
+  std::unique_ptr<ConnectionGuard> guard_;  ///< After the sockets and the gate.
   std::map<std::uint64_t, KnownTopology> topologies_;
   std::map<std::string, LastScene> last_scenes_;  ///< By sensor.
   std::map<std::string, v1::SensorStatus> statuses_;

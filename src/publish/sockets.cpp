@@ -15,6 +15,7 @@
 namespace gfp {
 namespace {
 
+constexpr int kTakesNothingMs = 15'000;  ///< A peer over tcp that takes nothing for so long is cut off by the system.
 constexpr int kLingerMs = 500;  ///< What is left to send at the end may take so long.
 
 }  // namespace
@@ -51,8 +52,13 @@ zmq::socket_t make_socket(zmq::context_t& context, zmq::socket_type type, const 
   if (type == zmq::socket_type::xpub) socket.set(zmq::sockopt::xpub_verbose, true);  // each late joiner is seen, and gets what it needs at once
   socket.set(zmq::sockopt::linger, kLingerMs);
   socket.set(zmq::sockopt::maxmsgsize, options.max_message_bytes);
-  socket.set(zmq::sockopt::heartbeat_ivl, 1000);
-  socket.set(zmq::sockopt::heartbeat_timeout, 3000);
+  // No heartbeat of its own: to a peer that takes nothing it is never sent, and its answer would end the countdown (TTL) that each
+  // heartbeat of our clients begins anew. Other clients are the system's to find out about, over tcp.
+  socket.set(zmq::sockopt::tcp_maxrt, kTakesNothingMs);
+  socket.set(zmq::sockopt::tcp_keepalive, 1);
+  socket.set(zmq::sockopt::tcp_keepalive_idle, kTakesNothingMs / 1000);
+  socket.set(zmq::sockopt::tcp_keepalive_intvl, 3);
+  socket.set(zmq::sockopt::tcp_keepalive_cnt, 3);
   socket.set(zmq::sockopt::handshake_ivl, 3000);
   socket.set(zmq::sockopt::ipv6, true);
   return socket;
@@ -94,6 +100,7 @@ Result<BoundSocket> bind_socket(zmq::context_t& context, zmq::socket_type type, 
   const auto first_tcp = std::stable_partition(ordered.begin(), ordered.end(), [](const std::string& endpoint) { return !is_remote(endpoint); });
   try {
     bound.socket = make_socket(context, type, options);
+    if (options.guard != nullptr) options.guard->watch(context, bound.socket);
   } catch (const zmq::error_t& error) {
     return failure(ErrorCode::kIo, fmt::format("socket: {}", error.what()));
   }

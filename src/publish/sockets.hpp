@@ -8,6 +8,7 @@
 
 #include "gfp/client/curve_key.hpp"
 #include "gfp/core/error.hpp"
+#include "publish/connection_guard.hpp"
 
 namespace gfp {
 
@@ -44,6 +45,7 @@ inline bool is_remote(const std::string& endpoint) { return endpoint.starts_with
 struct SocketOptions {
   int high_water_mark = 1000;          ///< Messages that wait for one slow peer.
   std::int64_t max_message_bytes = -1; ///< A peer that sends more is not one of ours: it is cut off before it is read. -1: no limit.
+  ConnectionGuard* guard = nullptr;    ///< Watches the socket's connections; may be empty.
   const CurveKey* curve_key = nullptr; ///< tcp endpoints are encrypted with it, and their peers have to pass the KeyGate.
 };
 

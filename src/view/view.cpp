@@ -31,6 +31,7 @@ using view::Client;
 using view::Hub;
 
 constexpr std::chrono::seconds kHttpTimeout{10};
+constexpr std::chrono::seconds kSilence{20};  ///< A viewer that says nothing for so long, and does not answer a ping, is gone.
 constexpr std::uint32_t kMaxHeaderBytes = 8192;
 constexpr int kMaxRequests = 64;  ///< At a time; a connection beyond is closed.
 
@@ -60,7 +61,7 @@ class Socket : public std::enable_shared_from_this<Socket> {
   void accept(const http::request<http::empty_body>& request, std::string_view subprotocol) {
     shared_.sockets.insert(this);
     beast::get_lowest_layer(socket_).expires_never();
-    socket_.set_option(websocket::stream_base::timeout::suggested(beast::role_type::server));
+    socket_.set_option(websocket::stream_base::timeout{kHttpTimeout, kSilence, true});
     socket_.set_option(websocket::stream_base::decorator([protocol = std::string(subprotocol)](websocket::response_type& response) {
       response.set(http::field::sec_websocket_protocol, protocol);
       response.set(http::field::server, "gfpd");
