@@ -45,7 +45,24 @@ Result<void> McapWriter::append(const McapChunk& chunk) {
   if (auto written = write(chunk.bytes); !written) return written;
   chunks_.push_back(std::move(info));
   for (const auto& [channel, count] : chunk.message_counts) message_counts_[channel] += count;
+  counts_of_appended_.push_back(chunk.message_counts);
   return {};
+}
+
+std::uint64_t McapWriter::drop_last_chunk() {
+  if (counts_of_appended_.empty()) return 0;
+  end_ = chunks_.back().offset;
+  has_crc_ = false;
+  std::uint64_t dropped = 0;
+  for (const auto& [channel, count] : counts_of_appended_.back()) {
+    dropped += count;
+    message_counts_[channel] -= count;
+    if (message_counts_[channel] == 0) message_counts_.erase(channel);
+  }
+  chunks_.pop_back();
+  counts_of_appended_.pop_back();
+  static_cast<void>(file_->truncate(end_));
+  return dropped;
 }
 
 Result<void> McapWriter::append_definitions(const McapRegistry& registry) {
@@ -137,7 +154,10 @@ Result<void> McapWriter::finish(const McapRegistry& registry) {
   mcap::put_record(bytes, Op::kDataEnd, [&] { BytePut(bytes).number(has_crc_ ? crc_ : 0U); });
   bytes += summary_at(end_ + bytes.size(), registry);
   bytes += mcap::kMagic;
-  if (auto written = file_->write_at(end_, bytes); !written) return written;
+  if (auto written = file_->write_at(end_, bytes); !written) {
+    static_cast<void>(file_->truncate(end_));  // on a full disk what it left, and a refused chunk before it, is in its own way
+    return written;
+  }
   if (auto cut = file_->truncate(end_ + bytes.size()); !cut) return cut;
   return file_->sync();
 }

@@ -18,6 +18,7 @@ using State = RecordingStatus::State;
 Nanoseconds seconds(double value) { return Nanoseconds(std::llround(1e9 * value)); }
 std::uint64_t megabytes(double value) { return static_cast<std::uint64_t>(1e6 * value); }
 
+constexpr std::uint64_t kRoomForEnd = 1U << 20U;  ///< Bytes, of the summary of an hour.
 constexpr Nanoseconds kChunkAge{200'000'000}, kSyncAge{800'000'000}, kSpaceAge{1'000'000'000};
 
 std::uint64_t messages_in(const McapChunk& chunk) {
@@ -147,10 +148,12 @@ void RecordingSeries::finish_file() {
   if (!writer_) return;
   const std::filesystem::path active = status_.file;
   Result<void> finished = writer_->finish(encoder_.registry());
-  if (!finished) {  // a refusal may pass; else repair will do it
+  bool again = true;
+  while (!finished && again) {  // a refusal may pass; where nothing helps, repair will do it
     ++status_.write_errors;
     status_.last_error = finished.error().what;
     finished = writer_->finish(encoder_.registry());
+    again = !finished && make_room_for_end();
   }
   writer_.reset();
   status_.file.clear();
@@ -159,6 +162,16 @@ void RecordingSeries::finish_file() {
   if (finished) finished = storage_.rename(active, final_name_);
   if (!finished) return fail(finished.error(), 0);
   ++status_.files;
+}
+
+/// On a full disk the last chunk gives its place to what makes the others readable.
+bool RecordingSeries::make_room_for_end() {
+  const auto free = storage_.free_bytes(options_.folder);
+  if (!free || *free >= kRoomForEnd) return false;
+  const std::uint64_t messages = writer_->drop_last_chunk();
+  status_.messages -= messages;
+  status_.lost_messages += messages;
+  return messages > 0;
 }
 
 /// Looks once a second; makes room where it is told to.

@@ -22,6 +22,7 @@ class MemoryStorage final : public RecordingStorage {
   std::vector<File> files;
   std::uint64_t free = 1ULL << 40U;
   std::size_t fail_from = 0, fail_until = 0;  ///< Writes of every file.
+  std::size_t capacity = std::string::npos;   ///< Of every file's disk.
   bool refuses_files = false;
   std::vector<std::filesystem::path> removed;
 
@@ -33,6 +34,7 @@ class MemoryStorage final : public RecordingStorage {
     files.back().state->writes = writes;
     files.back().state->fail_from = fail_from;
     files.back().state->fail_until = fail_until;
+    files.back().state->capacity = capacity;
     return std::unique_ptr<ByteFile>(std::make_unique<MemoryFile>(files.back().state));
   }
   Result<void> rename(const std::filesystem::path& from, const std::filesystem::path& to) override {
@@ -180,6 +182,30 @@ TEST(RecordingSeries, ARefusedWriteCostsItsChunk) {
       const bool failed = series.status().write_errors > 0;
       EXPECT_TRUE(failed || first > 25) << "from write " << first;
     }
+}
+
+// The disk is full to the last byte: the file is closed and right all the same, for the last chunks give their place to its end.
+TEST(RecordingSeries, AFileOnAFullDiskIsClosed) {
+  for (const std::size_t capacity : {100'000U, 100'500U, 131'072U, 200'001U}) {
+    Bench bench;
+    bench.options.min_free_mb = 0;
+    bench.storage.capacity = capacity;
+    RecordingSeries series(bench.options, bench.storage);
+    bench.put(series, 500);
+    EXPECT_EQ(series.status().state, RecordingStatus::State::kFailing);
+    bench.storage.free = 0;
+    series.close();
+    ASSERT_EQ(bench.storage.files.size(), 1U);
+    EXPECT_FALSE(bench.storage.files[0].name.string().ends_with(".active"));
+    auto reader = McapReader::open(source_of(bench.storage.files[0].state->bytes), "full");
+    ASSERT_TRUE(reader && reader->has_index()) << "capacity " << capacity;
+    EXPECT_TRUE(reader->damage().empty());
+    const auto found = bench.recorded();
+    bench.expect_true(found);
+    EXPECT_GT(found.size(), 0U);
+    EXPECT_EQ(found.size(), series.status().messages);
+    EXPECT_EQ(found.size() + series.status().lost_messages, 500U) << "capacity " << capacity;
+  }
 }
 
 TEST(RecordingSeries, SurvivesAFolderThatCannotBeWritten) {

@@ -169,9 +169,10 @@ void record(RecordingSeries& series, std::uint32_t messages) {
   series.close();
 }
 
-/// Write `number` + 1 is refused: every message is in a file that is right, or counted as lost.
-Trial write_trial(std::uint64_t number) {
-  FailingStorage storage(number + 1, number + 2);
+/// Writes from `number` + 1 on are refused, `refused` of them: every message is in a file that is right, or counted as lost, which those
+/// are that came while the disk refused.
+Trial refusal_trial(std::uint64_t number, std::uint64_t refused) {
+  FailingStorage storage(number + 1, number + 1 + refused);
   RecordingOptions options;
   options.mode = "continuous";
   options.max_file_mb = 1;
@@ -189,10 +190,14 @@ Trial write_trial(std::uint64_t number) {
   }
   if (found + series.status().lost_messages != kMessages) trial.failure = "of " + std::to_string(kMessages) + " messages " + std::to_string(found) + " are there and " + std::to_string(series.status().lost_messages) + " counted as lost";
   if (series.status().write_errors == 0) trial.failure = "the refused write was not counted";
-  if (series.status().lost_messages > 21) trial.failure = std::to_string(series.status().lost_messages) + " messages lost by one write";
+  if (series.status().lost_messages > 21 * refused) trial.failure = std::to_string(series.status().lost_messages) + " messages lost by " + std::to_string(refused) + " refused writes";
   trial.measured("lost_messages_max", series.status().lost_messages);
   return trial;
 }
+
+/// EIO: one write. ENOSPC: all of them for 5 s, which are 25 chunks.
+Trial write_trial(std::uint64_t number) { return refusal_trial(number, 1); }
+Trial space_trial(std::uint64_t number) { return refusal_trial(number, 25); }
 
 /// What a recording asked of its disk, in order.
 struct DiskEvent {
@@ -296,16 +301,17 @@ Trial power_trial(std::uint64_t seed) {
 
 int main(int argc, char** argv) {
   std::string ledger;
-  std::uint64_t kills = 0, flips = 0, writes = 0, powers = 0;
+  std::uint64_t kills = 0, flips = 0, writes = 0, spaces = 0, powers = 0;
   CLI::App app{"Kills, rotten bits, refused writes and power losses of recordings", "gfp_recording_soak"};
   app.add_option("LEDGER", ledger, "Where results go, and where a run goes on")->required();
   app.add_option("--kills", kills);
   app.add_option("--flips", flips);
   app.add_option("--writes", writes);
+  app.add_option("--spaces", spaces);
   app.add_option("--powers", powers);
   CLI11_PARSE(app, argc, argv);
   const gfp::test::SoakLedger soak(ledger);
   const bool sound = soak.run("kill", kills, gfp::kill_trial) && soak.run("flip", flips, gfp::flip_trial) && soak.run("write", writes, gfp::write_trial) &&
-                     soak.run("power", powers, gfp::power_trial);
+                     soak.run("space", spaces, gfp::space_trial) && soak.run("power", powers, gfp::power_trial);
   return sound ? 0 : 1;
 }

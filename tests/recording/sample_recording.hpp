@@ -21,13 +21,16 @@ class MemoryFile final : public ByteFile {
     std::string bytes;
     std::size_t writes = 0, syncs = 0;
     std::size_t fail_from = 0, fail_until = 0;  ///< Writes [from, until), counted from 1, fail half-way.
+    std::size_t capacity = std::string::npos;   ///< Of its disk: beyond it nothing is written.
   };
   explicit MemoryFile(std::shared_ptr<State> state) : state_(std::move(state)) {}
 
   Result<void> write_at(std::uint64_t offset, std::string_view bytes) override {
     ++state_->writes;
-    const bool fails = state_->writes >= state_->fail_from && state_->writes < state_->fail_until;
-    if (fails) bytes = bytes.substr(0, bytes.size() / 2);
+    const bool is_full = offset + bytes.size() > std::max(state_->capacity, state_->bytes.size());
+    const bool fails = is_full || (state_->writes >= state_->fail_from && state_->writes < state_->fail_until);
+    if (is_full) bytes = bytes.substr(0, state_->capacity - std::min<std::size_t>(state_->capacity, static_cast<std::size_t>(offset)));
+    else if (fails) bytes = bytes.substr(0, bytes.size() / 2);
     if (state_->bytes.size() < offset + bytes.size()) state_->bytes.resize(offset + bytes.size());
     std::copy(bytes.begin(), bytes.end(), state_->bytes.begin() + static_cast<std::ptrdiff_t>(offset));
     if (fails) return failure(ErrorCode::kIo, "No space left on device");

@@ -35,6 +35,9 @@ class McapWriter {
   /// An error leaves a file that can be repaired; finish() may be tried again.
   Result<void> finish(const McapRegistry& registry);
 
+  /// Takes the last chunk back, where there is no room for the end of the file. Returns how many messages it held; 0: there was none.
+  std::uint64_t drop_last_chunk();
+
   std::uint64_t bytes() const { return end_; }
   std::uint64_t messages() const;
   std::size_t chunks() const { return chunks_.size(); }
@@ -49,6 +52,7 @@ class McapWriter {
   std::uint32_t crc_ = 0;       ///< Of all that was written.
   bool has_crc_ = true;         ///< Not after resume().
   std::vector<McapChunkInfo> chunks_;
+  std::vector<std::map<std::uint16_t, std::uint64_t>> counts_of_appended_;  ///< By channel, of the last chunks: those that were not resumed.
   std::vector<MetadataEntry> metadata_;
   std::map<std::uint16_t, std::uint64_t> message_counts_;  ///< By channel.
 };

@@ -102,6 +102,7 @@ class RecordingSeries {
   void write(const McapChunk& chunk, Now now);
   bool open_file(Now now);
   void finish_file();
+  bool make_room_for_end();
   bool has_space(Now now);
   void fail(const Error& error, std::uint64_t messages);
   std::filesystem::path next_name(std::uint64_t first_log_time_ns) const;
