@@ -9,6 +9,7 @@
 #include <cstring>
 
 #include "wire/bounded_parse.hpp"
+#include "wire/quantise.hpp"
 
 namespace gfp::wire {
 namespace {
@@ -58,12 +59,17 @@ Result<std::vector<Enum>> enums_from(const char* what, const std::string& bytes,
   return values;
 }
 
-void fill_float32(const FittedModel& model, v1::Vertices& message) {
+/// x y z x y z... of the vertices.
+std::span<const double> coordinates(const FittedModel& model) {
   static_assert(sizeof(Eigen::Vector3d) == 3 * sizeof(double), "vertices lie one behind the other");
+  return {model.vertices.empty() ? nullptr : model.vertices.front().data(), 3 * model.vertices.size()};
+}
+
+void fill_float32(const FittedModel& model, v1::Vertices& message) {
   constexpr std::size_t kBlock = 384;  // converted where the compiler can do several at a time, then copied
   std::array<float, kBlock> block;
-  const std::size_t count = 3 * model.vertices.size();
-  const double* const from = count == 0 ? nullptr : model.vertices.front().data();
+  const std::span<const double> from = coordinates(model);
+  const std::size_t count = from.size();
   std::string& positions = *message.mutable_positions();
   positions.resize(count * sizeof(float));
   for (std::size_t done = 0; done < count; done += kBlock) {
@@ -75,26 +81,17 @@ void fill_float32(const FittedModel& model, v1::Vertices& message) {
 }
 
 void fill_int16(const FittedModel& model, v1::Vertices& message) {
-  const Bounds box = bounds(model.vertices);
-  const Eigen::Vector3d origin = model.vertices.empty() ? Eigen::Vector3d(0, 0, 0) : box.centre();
-  const double scale = model.vertices.empty() ? 1.0 : std::max(box.size().maxCoeff() / 65534.0, 1e-9);
-  std::vector<std::int16_t> positions;
-  positions.reserve(3 * model.vertices.size());
-  for (const Eigen::Vector3d& p : model.vertices)
-    for (int axis = 0; axis < 3; ++axis)
-      positions.push_back(static_cast<std::int16_t>(std::clamp(std::round((p[axis] - origin[axis]) / scale), -32767.0, 32767.0)));
-  assign_array(*message.mutable_positions(), positions.data(), positions.size());
+  const std::span<const double> xyz = coordinates(model);
+  Eigen::Vector3d low(0, 0, 0), high(0, 0, 0);
+  bounds_of(xyz, low.data(), high.data());
+  const Eigen::Vector3d origin = 0.5 * (low + high);
+  const double scale = xyz.empty() ? 1.0 : std::max((high - low).maxCoeff() / 65534.0, 1e-9);
+  quantise_points(xyz, origin.data(), scale, *message.mutable_positions());
   for (int axis = 0; axis < 3; ++axis) message.add_origin(origin[axis]);
   message.set_scale(scale);
 
-  float largest = 0;
-  for (const float sigma : model.sigma_m) largest = std::max(largest, sigma);
-  const double sigma_scale = std::max(static_cast<double>(largest) / 65535.0, 1e-9);
-  std::vector<std::uint16_t> sigmas;
-  sigmas.reserve(model.sigma_m.size());
-  for (const float sigma : model.sigma_m)
-    sigmas.push_back(static_cast<std::uint16_t>(std::clamp(std::round(static_cast<double>(sigma) / sigma_scale), 0.0, 65535.0)));
-  assign_array(*message.mutable_sigma(), sigmas.data(), sigmas.size());
+  const double sigma_scale = std::max(static_cast<double>(largest_of(model.sigma_m)) / 65535.0, 1e-9);
+  quantise_lengths(model.sigma_m, sigma_scale, *message.mutable_sigma());
   message.set_sigma_scale(sigma_scale);
 }
 

@@ -64,6 +64,29 @@ TEST(MeshMessages, Int16IsHalfAsLargeAndErrsByHalfAStep) {
   }
 }
 
+// Vertices are converted several at a time: what is left over at the end is as right as the rest.
+TEST(MeshMessages, Int16IsRightForAnyNumberOfVertices) {
+  Random random(3);
+  for (const std::size_t count : {1U, 2U, 7U, 8U, 9U, 127U, 128U, 129U, 500U}) {
+    FittedModel model;
+    for (std::size_t i = 0; i < count; ++i) {
+      model.vertices.emplace_back(random.uniform(0.1, 0.2), random.uniform(-0.3, -0.2), random.uniform(-0.1, 0.1));
+      model.sigma_m.push_back(static_cast<float>(random.uniform(0, 0.01)));
+    }
+    model.states.assign(count, 1);
+    v1::Vertices message;
+    fill(model, VertexCoding::kInt16, message);
+    const Bounds box = bounds(model.vertices);
+    EXPECT_DOUBLE_EQ(message.scale(), std::max(box.size().maxCoeff() / 65534.0, 1e-9)) << count << " vertices";
+    const auto back = vertices_from(message);
+    ASSERT_TRUE(back.has_value()) << back.error().what;
+    for (std::size_t i = 0; i < count; ++i) {
+      EXPECT_LE((back->positions[i] - model.vertices[i]).cwiseAbs().maxCoeff(), 0.5 * message.scale() * 1.0001) << "vertex " << i << " of " << count;
+      EXPECT_LE(std::abs(back->sigma_m[i] - model.sigma_m[i]), 0.5 * message.sigma_scale() * 1.01) << "vertex " << i << " of " << count;
+    }
+  }
+}
+
 TEST(MeshMessages, NoVerticesAreNoVertices) {
   FittedModel empty;
   empty.topology = std::make_shared<Topology>();
