@@ -13,7 +13,8 @@
 namespace gfp {
 namespace {
 
-constexpr int kEvents = ZMQ_EVENT_ACCEPTED | ZMQ_EVENT_DISCONNECTED | ZMQ_EVENT_CLOSED | ZMQ_EVENT_HANDSHAKE_FAILED_AUTH | ZMQ_EVENT_HANDSHAKE_FAILED_PROTOCOL;
+constexpr int kEvents = ZMQ_EVENT_ACCEPTED | ZMQ_EVENT_DISCONNECTED | ZMQ_EVENT_CLOSED | ZMQ_EVENT_HANDSHAKE_FAILED_AUTH | ZMQ_EVENT_HANDSHAKE_FAILED_PROTOCOL | ZMQ_EVENT_HANDSHAKE_FAILED_NO_DETAIL;
+constexpr const char* kThisHost = "this host";
 
 /// 0: no socket.
 std::uint64_t inode_of(int descriptor) {
@@ -28,7 +29,7 @@ std::string peer_of(int descriptor) {
   std::array<char, INET6_ADDRSTRLEN> text{};
   if (address.ss_family == AF_INET) inet_ntop(AF_INET, &reinterpret_cast<const sockaddr_in&>(address).sin_addr, text.data(), text.size());
   else if (address.ss_family == AF_INET6) inet_ntop(AF_INET6, &reinterpret_cast<const sockaddr_in6&>(address).sin6_addr, text.data(), text.size());
-  else return "this host";
+  else return kThisHost;
   return text.data();
 }
 
@@ -41,7 +42,7 @@ ConnectionGuard::~ConnectionGuard() {
 void ConnectionGuard::watch(zmq::context_t& context, zmq::socket_t& socket) {
   const std::string address = fmt::format("inproc://gfp.connections.{}", watched_.size());
   if (zmq_socket_monitor(socket.handle(), address.c_str(), kEvents) != 0) throw zmq::error_t();
-  Watched& watched = watched_.emplace_back(Watched{socket.handle(), zmq::socket_t(context, zmq::socket_type::pair), {}});
+  Watched& watched = watched_.emplace_back(Watched{socket.handle(), zmq::socket_t(context, zmq::socket_type::pair), {}, false});
   watched.monitor.set(zmq::sockopt::linger, 0);
   watched.monitor.set(zmq::sockopt::rcvhwm, 0);  // else ZeroMQ's own thread waits for the one that reads here
   watched.monitor.connect(address);
@@ -73,10 +74,14 @@ void ConnectionGuard::take(Watched& watched, std::uint16_t event, std::uint32_t 
     case ZMQ_EVENT_ACCEPTED: return accepted(static_cast<int>(value));
     case ZMQ_EVENT_HANDSHAKE_FAILED_AUTH: watched.failure = "its key is not authorized"; return;
     case ZMQ_EVENT_HANDSHAKE_FAILED_PROTOCOL: watched.failure = "no key, or one that is not right"; return;
+    case ZMQ_EVENT_HANDSHAKE_FAILED_NO_DETAIL: watched.gave_up = true; return;
     default: break;  // closed, by whomever
   }
   const auto found = connections_.find(static_cast<int>(value));
-  if (!watched.failure.empty()) refuse(found == connections_.end() ? "a peer that is gone" : found->second.peer, std::exchange(watched.failure, {}));
+  const std::string peer = found == connections_.end() ? "a peer that is gone" : found->second.peer;
+  // A client without a key may see it first, and leave. Over ipc it just came and went.
+  if (std::exchange(watched.gave_up, false) && watched.failure.empty() && peer != kThisHost) watched.failure = "it left before it was let in, or said nothing";
+  if (!watched.failure.empty()) refuse(peer, std::exchange(watched.failure, {}));
   if (found != connections_.end()) connections_.erase(found);
 }
 

@@ -58,7 +58,8 @@ class ConnectionGuard {
   struct Watched {
     void* socket = nullptr;
     zmq::socket_t monitor;
-    std::string failure;  ///< Of the connection that ZeroMQ is about to close.
+    std::string failure;   ///< Of the connection that ZeroMQ is about to close.
+    bool gave_up = false;  ///< Likewise: it ended within the handshake.
   };
 
   void take(Watched& watched, std::uint16_t event, std::uint32_t value);
