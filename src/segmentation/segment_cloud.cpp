@@ -20,7 +20,7 @@ namespace gfp {
 namespace {
 
 constexpr double kWorkspaceDepth = 2.0;  // metres: beyond it the noise of a triangulating sensor is a centimetre and more
-constexpr double kClearOfBand = 1.2;    // a rough or distant support has bumps higher than its band: what stands on it is clearly higher
+constexpr double kClearOfBand = 1.1;    // a rough or distant support has bumps that reach over its band
 constexpr int kWorthNaming = 60;  // pixels: fewer are noise that nobody wants to read about
 
 struct Candidate {
