@@ -142,8 +142,31 @@ void add_objects(Scene& scene, std::vector<Work> work, const Segments& segments,
   for (Work& w : work) scene.objects.push_back(std::move(w.object));
 }
 
+/// A fit of a primitive that the library no longer has, or has otherwise (a person said what its points are): it holds no more.
+bool is_outdated(const Track& track, const std::string& sensor, const PrimitiveLibrary& library) {
+  const SensorTrack* own = track.seen_by(sensor);
+  for (const SceneObject* object : {track.last().object.get(), own ? own->object.get() : nullptr}) {
+    if (!object || !object->model.primitive) continue;
+    const PrimitivePtr now = library.find(object->model.primitive->name);
+    if (!now || now->content_hash != object->model.primitive->content_hash) return true;
+  }
+  return false;
+}
+
+/// What was fitted to them before says nothing of the objects with outdated fits: they are fitted as if they were new.
+void forget_outdated(std::vector<ObjectView>& views, const SceneMemory& memory, const std::string& sensor, const PrimitiveLibrary& library) {
+  for (ObjectView& view : views) {
+    const Track* track = memory.track(view.id);
+    if (!track || !is_outdated(*track, sensor, library)) continue;
+    view.warm_start.reset();
+    view.unchanged = false;
+  }
+}
+
 /// A frame that shows the same as the last one looked at is the same scene; now and then one is looked at all the same.
-bool stands_still(const Frame& frame, const SceneMemory& memory, const PipelineOptions& options) {
+bool stands_still(const Frame& frame, const SceneMemory& memory, const PrimitiveLibrary& library, const PipelineOptions& options) {
+  for (const Track& track : memory.tracks)
+    if (track.seen_by(frame.sensor) && is_outdated(track, frame.sensor, library)) return false;
   const SensorMemory& sensor = memory.of(frame.sensor);
   return sensor.look && sensor.look->field_changes == memory.field_changes && sensor.frames_since_look + 1 < options.memory.look_again_every &&
          shows_the_same(frame, sensor.look->frame);
@@ -153,7 +176,8 @@ PipelineResult look(const Frame& frame, const SceneMemory& memory, const Primiti
   const auto cloud = timings.measure("cloud", [&] { return depth_to_cloud(frame.depth, frame.camera, options.cloud); });
   const auto segments = timings.measure("segmentation", [&] { return segment(cloud, frame, memory, options); });
   const auto normals = timings.measure("normals", [&] { return object_normals(cloud, segments, options.normals); });
-  const auto views = timings.measure("association", [&] { return associate(segments, cloud, normals, frame, memory, options.memory); });
+  auto views = timings.measure("association", [&] { return associate(segments, cloud, normals, frame, memory, options.memory); });
+  forget_outdated(views, memory, frame.sensor, library);
 
   Scene scene = stamped(empty_scene(segments), frame, options);
   scene.lost = lost_ids(memory, views, frame.sensor);
@@ -167,7 +191,7 @@ PipelineResult look(const Frame& frame, const SceneMemory& memory, const Primiti
 
 PipelineResult process_frame(const Frame& frame, const SceneMemory& memory, const PrimitiveLibrary& library, const PipelineOptions& options) {
   StageTimings timings;
-  const bool still = timings.measure("comparison", [&] { return stands_still(frame, memory, options); });
+  const bool still = timings.measure("comparison", [&] { return stands_still(frame, memory, library, options); });
   PipelineResult result = still ? PipelineResult{stamped(standing_scene(memory, frame.sensor), frame, options),
                                                  remember_standing(memory, frame.sensor, options.memory)}
                                 : look(frame, memory, library, options, timings);

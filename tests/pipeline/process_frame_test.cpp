@@ -43,6 +43,30 @@ TEST_F(ProcessFrame, FirstAddsThenLeavesAloneWhatDidNotChange) {
   EXPECT_EQ(script().registered + script().contoured + script().superquadrics + script().planned, 0) << "a static scene costs nothing";
 }
 
+// As when a person says which of a primitive's vertices are control points: what stands is fitted with them at once.
+TEST_F(ProcessFrame, WhatStandsIsFittedAnewWhenItsPrimitiveIsAnother) {
+  const PipelineResult first = process_frame(block_frame(far_apart), {}, library);
+  ASSERT_EQ(first.scene.objects.size(), 2U);
+  const std::string fitted = first.scene.objects[0].model.primitive->name;
+  std::vector<PrimitivePtr> primitives;
+  for (const PrimitivePtr& primitive : library.all()) {
+    auto made = std::make_shared<Primitive>(*primitive);
+    if (made->name == fitted) ++made->content_hash;
+    primitives.push_back(std::move(made));
+  }
+  const PrimitiveLibrary retyped(std::move(primitives));
+  script().reset();
+  const PipelineResult second = process_frame(block_frame(far_apart, 1), first.memory, retyped);
+  ASSERT_EQ(second.scene.objects.size(), 2U);
+  EXPECT_EQ(second.scene.objects[0].id, first.scene.objects[0].id);
+  EXPECT_EQ(second.scene.objects[0].status, ObjectStatus::kUpdated);
+  EXPECT_EQ(second.scene.objects[0].model.primitive->content_hash, retyped.find(fitted)->content_hash);
+  EXPECT_EQ(script().recognised, 2) << "both are fits of it";
+  script().reset();
+  EXPECT_EQ(process_frame(block_frame(far_apart, 2), second.memory, retyped).scene.objects[0].status, ObjectStatus::kUnchanged);
+  EXPECT_EQ(script().recognised, 0);
+}
+
 TEST_F(ProcessFrame, RefitsOnlyWhatMoved) {
   const PipelineResult first = process_frame(block_frame(far_apart), {}, library);
   auto moved = far_apart;
