@@ -54,12 +54,12 @@ void McapSource::follow_control() {
 }
 
 Result<Frame> McapSource::grab(std::chrono::milliseconds timeout) {
-  if (!control_->wait_until_running(timeout)) return failure(ErrorCode::kTimeout, "paused: somebody holds the replay");
+  if (!control_->wait_until_running(timeout)) return failure(ErrorCode::kPaused, "somebody holds the replay");
   follow_control();
   if (position_ >= streams_.frames() && !options_.loop) {
     control_->played(last_played_, true);
     if (control_->holds_at_end()) {
-      if (!control_->wait_for_seek(timeout)) return failure(ErrorCode::kTimeout, "paused: the recording has come to its end");
+      if (!control_->wait_for_seek(timeout)) return failure(ErrorCode::kPaused, "the recording has come to its end and waits there");
       return grab(timeout);
     }
     return failure(ErrorCode::kEndOfStream, "the recording has come to its end");

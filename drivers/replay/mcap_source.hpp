@@ -14,7 +14,7 @@ namespace gfp {
 /// Plays an MCAP recording as the camera that made it: in its own rhythm times `speed`, every `step`-th frame, from `start_s` on.
 /// A control may pause it, step and seek. Stamps are the recorded ones and rise strictly; those of the host are the recorded ones
 /// too in deterministic mode (`frame_time`), so that nothing depends on how fast it is played. One thread at a time.
-/// grab() errors: kTimeout (not due yet; or held, by the control or at the end, which begins with `paused:`), kEndOfStream, and what McapStreams::load() says of a bad frame, which is then left behind.
+/// grab() errors: kTimeout (not due yet), kPaused (held by the control, or at the end), kEndOfStream, and what McapStreams::load() says of a bad frame, which is then left behind.
 class McapSource final : public FrameSource {
  public:
   McapSource(McapStreams streams, ReplayOptions options);

@@ -16,6 +16,7 @@ ExitCode exit_code_of(const Error& error) {
     case ErrorCode::kTooFewPoints:
     case ErrorCode::kDegenerateGeometry: return kExitDataError;
     case ErrorCode::kTimeout:
+    case ErrorCode::kPaused:
     case ErrorCode::kDeviceLost:
     case ErrorCode::kEndOfStream: return kExitUnavailable;
     case ErrorCode::kIo: return kExitIoError;

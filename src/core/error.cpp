@@ -10,6 +10,7 @@ std::string_view to_string(ErrorCode code) {
     case ErrorCode::kTooLarge: return "too_large";
     case ErrorCode::kUnsupported: return "unsupported";
     case ErrorCode::kTimeout: return "timeout";
+    case ErrorCode::kPaused: return "paused";
     case ErrorCode::kCorruptFrame: return "corrupt_frame";
     case ErrorCode::kDeviceLost: return "device_lost";
     case ErrorCode::kEndOfStream: return "end_of_stream";

@@ -30,8 +30,6 @@ std::string_view fault_of(const Error& error) {
   return error.code == ErrorCode::kDeviceLost || error.code == ErrorCode::kNotFound || error.code == ErrorCode::kIo ? fault::kLost : fault::kCorrupt;
 }
 
-bool is_pause(const Error& error) { return error.code == ErrorCode::kTimeout && error.what.starts_with("paused:"); }
-
 /// One call of run_source(): the status and who is told about it.
 class Run {
  public:
@@ -80,7 +78,7 @@ class Run {
         stalls = 0;
         continue;
       }
-      if (is_pause(frame.error())) {
+      if (frame.error().code == ErrorCode::kPaused) {
         next_fault_ = {};
         health_.restart();
         change(SourceState::kPaused);

@@ -54,7 +54,7 @@ inline ScriptedSource::Step frame(std::uint64_t sequence) {
   return {std::move(made), false, {}};
 }
 inline ScriptedSource::Step fault(ErrorCode code) { return {Error{code, std::string(to_string(code))}, false, {}}; }
-inline ScriptedSource::Step paused() { return {Error{ErrorCode::kTimeout, "paused: somebody holds it"}, false, {}}; }
+inline ScriptedSource::Step paused() { return {Error{ErrorCode::kPaused, "somebody holds it"}, false, {}}; }
 inline ScriptedSource::Step open_fault(ErrorCode code) { return {Error{code, std::string(to_string(code))}, true, {}}; }
 
 }  // namespace gfp::test

@@ -15,6 +15,7 @@ enum class ErrorCode {
   kTooLarge,          ///< A size beyond our bounds, refused before anything was allocated.
   kUnsupported,       ///< Well-formed, but not something we read (an unorganised cloud, say).
   kTimeout,           ///< Nothing arrived in time: ask again.
+  kPaused,            ///< Somebody holds a replay: nothing is wrong, ask again.
   kCorruptFrame,      ///< One frame was damaged: the next may be fine.
   kDeviceLost,        ///< The device is gone: reopen.
   kEndOfStream,       ///< A recording has come to its end: close.

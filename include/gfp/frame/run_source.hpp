@@ -63,8 +63,8 @@ void visit_fields(SourceOptions& o, Visitor&& field) {
 /// The sensor stamps of what is no recording become host time (ClockFit), so that the frames of several sensors can be ordered.
 ///
 /// `on_change` is called on this thread once per change of state, fault or clock state (not per frame), after the status was updated.
-/// grab(): kTimeout and damage of one frame (any other code) are counted, kDeviceLost reopens, kEndOfStream ends; kTimeout that begins with
-/// `paused:` is neither counted nor a stall.
+/// grab(): kTimeout and damage of one frame (any other code) are counted, kDeviceLost reopens, kEndOfStream ends; kPaused is neither
+/// counted nor a stall.
 /// open(): kInvalidArgument, kUnsupported, kCorruptData and kTooLarge end as kFailed; anything else is tried again.
 SourceStatus run_source(FrameSource& source, LatestSlot<FramePtr>& out, const SourceOptions& options,
                         const std::stop_token& stop, const std::function<void(const SourceStatus&)>& on_change = {});
