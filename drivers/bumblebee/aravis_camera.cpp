@@ -51,7 +51,8 @@ Result<void> take_pixels(ArvBuffer* buffer, Transfer& transfer) {
   transfer.height *= static_cast<int>(pictures.size());
   for (const guint part : pictures) {
     std::size_t size = 0;
-    const auto* const data = static_cast<const std::uint8_t*>(arv_buffer_get_part_data(buffer, part, &size));
+    // A lone part is all that came: not every transport of Aravis tells its size.
+    const auto* const data = static_cast<const std::uint8_t*>(arv_buffer_get_n_parts(buffer) == 1 ? arv_buffer_get_data(buffer, &size) : arv_buffer_get_part_data(buffer, part, &size));
     transfer.bytes.insert(transfer.bytes.end(), data, data + size);
   }
   return {};

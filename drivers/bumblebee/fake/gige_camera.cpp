@@ -19,6 +19,7 @@ extern "C" {
 #include <thread>
 #include <utility>
 
+#include "bumblebee/fake/big_endian.hpp"
 #include "gfp/core/random.hpp"
 #include "gfp/core/time.hpp"
 
@@ -30,16 +31,11 @@ constexpr std::uint16_t kPort = 3956;
 constexpr std::uint32_t kAddressRegister = 0x0024, kCapabilityRegister = 0x0934, kPrivilegeRegister = 0x0A00, kStreamPort = 0x0D00, kStreamPacketSize = 0x0D04, kStreamAddress = 0x0D18;
 constexpr std::size_t kDiscoveryBytes = 0xF8, kMaxDatagram = 1024;
 enum Command : std::uint16_t { kDiscovery = 0x02, kResend = 0x40, kReadRegister = 0x80, kWriteRegister = 0x82, kReadMemory = 0x84, kWriteMemory = 0x86 };
-constexpr std::uint8_t kIsCommand = 0x42, kIsAnswer = 0x00, kIsError = 0x80;
-constexpr std::uint16_t kNotImplemented = 0x8001, kAccessDenied = 0x8006;
+constexpr std::uint8_t kIsCommand = 0x42;
+constexpr std::uint16_t kDone = 0, kNotImplemented = 0x8001, kAccessDenied = 0x8006;
 constexpr std::uint32_t kCanResend = 0x4;  // of the capabilities
 constexpr std::size_t kKeptFrames = 4;
 constexpr int kIdlePoll_ms = 50;
-
-std::uint16_t read16(const std::uint8_t* at) { return static_cast<std::uint16_t>(at[0] << 8 | at[1]); }
-std::uint32_t read32(const std::uint8_t* at) { return static_cast<std::uint32_t>(read16(at)) << 16 | read16(at + 2); }
-void put16(std::uint8_t* at, std::uint16_t value) { at[0] = static_cast<std::uint8_t>(value >> 8), at[1] = static_cast<std::uint8_t>(value); }
-void put32(std::uint8_t* at, std::uint32_t value) { put16(at, static_cast<std::uint16_t>(value >> 16)), put16(at + 2, static_cast<std::uint16_t>(value)); }
 
 sockaddr_in inet(std::uint32_t address, std::uint16_t port) {
   sockaddr_in to{};
@@ -99,9 +95,13 @@ class GigeCamera::Device {
     std::uint64_t frame;
     GvspPackets packets;
   };
+  struct Answer {
+    std::uint16_t status = kDone;
+    std::vector<std::uint8_t> body;
+  };
   void run(const std::stop_token& stop);
   void answer(const UdpSocket& socket);
-  std::vector<std::uint8_t> execute(std::uint16_t command, std::uint16_t id, std::span<std::uint8_t> body, const sockaddr_in& from);
+  std::optional<Answer> execute(std::uint16_t command, std::span<const std::uint8_t> body, const sockaddr_in& from);
   void resend(std::span<const std::uint8_t> body);
   void send_frame();
   void send_packet(std::span<const std::uint8_t> packet);
@@ -136,8 +136,8 @@ Result<void> GigeCamera::Device::start() {
     return failure(ErrorCode::kIo, fmt::format("GigE camera: broadcasts to port {} cannot be had: {}", kPort, std::strerror(errno)));
 
   registers_ = arv_fake_camera_new(options_.serial.c_str());
-  std::array<std::uint8_t, 4> raw{};
-  put32(raw.data(), address);
+  std::vector<std::uint8_t> raw;
+  BigEndianWriter(raw) << address;
   arv_fake_camera_write_memory(registers_, kAddressRegister, 4, raw.data());
   const auto width = static_cast<guint32>(format_.width), height = static_cast<guint32>(format_.height * format_.parts);  // the payload is that of all parts
   for (const auto& [at, value] : {std::pair<guint32, guint32>{ARV_FAKE_CAMERA_REGISTER_SENSOR_WIDTH, width}, {ARV_FAKE_CAMERA_REGISTER_SENSOR_HEIGHT, height}, {ARV_FAKE_CAMERA_REGISTER_WIDTH, width},
@@ -176,49 +176,44 @@ void GigeCamera::Device::answer(const UdpSocket& socket) {
     const std::size_t body = read16(&datagram[4]);
     if (8 + body > size) continue;
     if (controller_ && same(*controller_, from)) heard_ = monotonic_now();
-    const std::vector<std::uint8_t> reply = execute(command, id, std::span(datagram).subspan(8, body), from);
-    if (!reply.empty()) control_.send(reply, from);
+    const auto answer = execute(command, std::span(datagram).subspan(8, body), from);
+    if (!answer) continue;
+    std::vector<std::uint8_t> reply;
+    BigEndianWriter(reply) << answer->status << static_cast<std::uint16_t>(command + 1) << static_cast<std::uint16_t>(answer->body.size()) << id << std::span<const std::uint8_t>(answer->body);
+    control_.send(reply, from);
   }
 }
 
-/// The answer; nothing to what has none. Reads and writes of registers: one each, as Aravis does them.
-std::vector<std::uint8_t> GigeCamera::Device::execute(std::uint16_t command, std::uint16_t id, std::span<std::uint8_t> body, const sockaddr_in& from) {
-  std::vector<std::uint8_t> reply(8);
-  reply[0] = kIsAnswer;
-  put16(&reply[2], static_cast<std::uint16_t>(command + 1));
-  put16(&reply[6], id);
-  const auto refuse = [&](std::uint16_t why) { reply.resize(8), reply[0] = kIsError, reply[1] = static_cast<std::uint8_t>(why); };
-  const bool may_write = !controller_ || same(*controller_, from);
+/// Nothing to what has no answer. Reads and writes of registers: one each, as Aravis does them.
+std::optional<GigeCamera::Device::Answer> GigeCamera::Device::execute(std::uint16_t command, std::span<const std::uint8_t> body, const sockaddr_in& from) {
+  Answer answer;
+  BigEndianWriter to(answer.body);
+  const auto put_memory = [&](std::uint32_t at, std::size_t size) {
+    std::array<std::uint8_t, kMaxDatagram> memory;
+    arv_fake_camera_read_memory(registers_, at, static_cast<guint32>(size), memory.data());
+    for (const std::uint8_t byte : std::span(memory).first(size)) to << byte;
+  };
+  const std::uint32_t at = body.size() >= 4 ? read32(body.data()) : 0;
   if (command == kDiscovery) {
-    reply.resize(8 + kDiscoveryBytes);
-    arv_fake_camera_read_memory(registers_, 0, kDiscoveryBytes, &reply[8]);
+    put_memory(0, kDiscoveryBytes);
   } else if (command == kReadRegister && body.size() >= 4) {
-    reply.resize(12);
-    put32(&reply[8], register_value(read32(body.data())));
+    to << register_value(at);
   } else if (command == kReadMemory && body.size() >= 8 && read16(&body[6]) <= kMaxDatagram) {
-    const std::uint16_t size = read16(&body[6]);
-    reply.resize(std::size_t{12} + size);
-    put32(&reply[8], read32(body.data()));
-    arv_fake_camera_read_memory(registers_, read32(body.data()), size, &reply[12]);
+    to << at;
+    put_memory(at, read16(&body[6]));
   } else if ((command == kWriteRegister || command == kWriteMemory) && body.size() >= 8) {
-    if (!may_write) {
-      refuse(kAccessDenied);
-    } else {
-      const std::uint32_t at = read32(body.data());
-      if (command == kWriteRegister) arv_fake_camera_write_register(registers_, at, read32(&body[4]));
-      else arv_fake_camera_write_memory(registers_, at, static_cast<guint32>(body.size() - 4), &body[4]);
-      reply.resize(12);
-      put16(&reply[10], 1);  // of one, one was written
-      if (at == kPrivilegeRegister) controller_ = arv_fake_camera_get_control_channel_privilege(registers_) != 0 ? std::optional(from) : std::nullopt, heard_ = monotonic_now();
-    }
+    if (controller_ && !same(*controller_, from)) return Answer{kAccessDenied, {}};
+    if (command == kWriteRegister) arv_fake_camera_write_register(registers_, at, read32(&body[4]));
+    else arv_fake_camera_write_memory(registers_, at, static_cast<guint32>(body.size() - 4), &body[4]);
+    if (at == kPrivilegeRegister) controller_ = arv_fake_camera_get_control_channel_privilege(registers_) != 0 ? std::optional(from) : std::nullopt, heard_ = monotonic_now();
+    to << std::uint16_t{0} << std::uint16_t{1};  // of one, one was written
   } else if (command == kResend && options_.resends) {
     resend(body);
-    return {};
+    return std::nullopt;
   } else {
-    refuse(kNotImplemented);
+    answer.status = kNotImplemented;
   }
-  put16(&reply[4], static_cast<std::uint16_t>(reply.size() - 8));
-  return reply;
+  return answer;
 }
 
 /// Body: channel, frame (16 bits; 0 where its 64 bits follow at the end), first and last packet.

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "bumblebee/fake/big_endian.hpp"
+
 namespace gfp {
 namespace {
 
@@ -9,32 +11,13 @@ enum class Content : std::uint8_t { kLeader = 1, kTrailer = 2, kPayload = 3, kMu
 constexpr std::uint16_t kImage = 0x0001, kParts = 0x000A, kTwoDimensional = 0x0001;  // payload types, and a part's
 constexpr std::size_t kIpAndUdp = 28, kHeader = 8, kExtendedHeader = 20, kPartHeader = 8;
 
-class Writer {
- public:
-  explicit Writer(std::vector<std::uint8_t>& bytes) : bytes_(bytes) {}
-  template <class Number>
-  Writer& operator<<(Number number) {
-    for (std::size_t i = sizeof(Number); i-- > 0;) bytes_.push_back(static_cast<std::uint8_t>(number >> (8 * i)));
-    return *this;
-  }
-  Writer& operator<<(std::span<const std::uint8_t> data) {
-    bytes_.insert(bytes_.end(), data.begin(), data.end());
-    return *this;
-  }
-
- private:
-  std::vector<std::uint8_t>& bytes_;
-};
-
-void write_timestamp(Writer& to, std::uint64_t timestamp_ns) { to << static_cast<std::uint32_t>(timestamp_ns >> 32) << static_cast<std::uint32_t>(timestamp_ns); }
-
-void write_geometry(Writer& to, const GigeFormat& format) {
+void write_geometry(BigEndianWriter& to, const GigeFormat& format) {
   const std::uint32_t offset = 0;
   const std::uint16_t padding = 0;
   to << static_cast<std::uint32_t>(format.width) << static_cast<std::uint32_t>(format.height) << offset << offset << padding << padding;
 }
 
-void write_part(Writer& to, const GigeFormat& format, int part) {
+void write_part(BigEndianWriter& to, const GigeFormat& format, int part) {
   const std::uint64_t length = format.part_bytes();
   to << kTwoDimensional << static_cast<std::uint16_t>(length >> 32) << static_cast<std::uint32_t>(length) << format.pixel_format;
   to << std::uint16_t{0} << static_cast<std::uint8_t>(part) << std::uint8_t{0} << std::uint32_t{0};  // source of the part, zones
@@ -54,7 +37,7 @@ std::span<const std::uint8_t> GvspPackets::operator[](std::size_t i) const {
 
 GvspPackets GvspPackets::of_transfer(const GigeFormat& format, std::span<const std::uint8_t> data, std::uint64_t frame, std::uint64_t timestamp_ns, std::size_t packet_bytes) {
   GvspPackets packets;
-  Writer to(packets.bytes_);
+  BigEndianWriter to(packets.bytes_);
   const bool is_extended = format.parts > 1;
   const auto begin = [&](Content content, std::uint8_t parts = 0) {
     const auto number = static_cast<std::uint32_t>(packets.begins_.size());
@@ -67,8 +50,7 @@ GvspPackets GvspPackets::of_transfer(const GigeFormat& format, std::span<const s
   const std::uint16_t type = is_extended ? kParts : kImage;
 
   begin(Content::kLeader, static_cast<std::uint8_t>(format.parts));
-  to << std::uint16_t{0} << type;
-  write_timestamp(to, timestamp_ns);
+  to << std::uint16_t{0} << type << timestamp_ns;
   if (is_extended) for (int part = 0; part < format.parts; ++part) write_part(to, format, part);
   else write_geometry(to << format.pixel_format, format);
 
