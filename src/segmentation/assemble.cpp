@@ -134,11 +134,9 @@ class Assembler {
   int strongest(int p, Usable&& usable) const {
     int best = -1, most = 0;
     for (const Contact& c : contacts_) {
-      if ((c.first != p && c.second != p) || !usable(c)) continue;
-      const int other = c.first == p ? c.second : c.first;
-      if (of(other).pixels < of(p).pixels || c.touching <= most) continue;
+      if (!c.is_of(p) || !usable(c) || of(c.other(p)).pixels < of(p).pixels || c.touching <= most) continue;
       most = c.touching;
-      best = other;
+      best = c.other(p);
     }
     return best;
   }
@@ -148,19 +146,23 @@ class Assembler {
   bool is_fragment(int p) const {
     if (of(p).pixels < kFragmentPixels) return true;
     for (const Contact& c : contacts_)
-      if ((c.first == p || c.second == p) && 4 * c.touching >= c.pairs && kFragmentShare * of(p).pixels < of(c.first == p ? c.second : c.first).pixels) return true;
+      if (c.is_of(p) && 4 * c.touching >= c.pairs && kFragmentShare * of(p).pixels < of(c.other(p)).pixels) return true;
     return false;
+  }
+
+  /// Pairs with all others.
+  int outline(int p) const {
+    int pairs = 0;
+    for (const Contact& c : contacts_) pairs += c.is_of(p) ? c.pairs : 0;
+    return pairs;
   }
 
   // A floor within a wall: most of the smaller one's outline touches the other, which rises above it.
   bool encloses(const Contact& c) const {
-    const bool first_smaller = of(c.first).pixels < of(c.second).pixels;
-    const PieceShape &inner = of(first_smaller ? c.first : c.second), &outer = of(first_smaller ? c.second : c.first);
-    int outline = 0;
-    for (const Contact& other : contacts_)
-      if (other.first == (first_smaller ? c.first : c.second) || other.second == (first_smaller ? c.first : c.second)) outline += other.pairs;
+    const int smaller = of(c.first).pixels < of(c.second).pixels ? c.first : c.second;
+    const PieceShape &inner = of(smaller), &outer = of(c.other(smaller));
     const double circumference = 3.5 * std::sqrt(static_cast<double>(inner.pixels));  // of a disc, in pixels across both axes
-    return inner.top_m < outer.top_m - 0.01 && c.touching > 0.5 * std::max<double>(circumference, outline);
+    return inner.top_m < outer.top_m - 0.01 && c.touching > 0.5 * std::max<double>(circumference, outline(smaller));
   }
 
   // Behind the other's outline, as high as it, and hollow. Halves of one hollow are joined first: neither need be hollow alone.
@@ -172,8 +174,8 @@ class Assembler {
       return both.bulge_m() < kHollow && in_front_of_both(c.first, c.second, both.top_m) >= 0;
     });
     repeat([&](const Contact& c) {
-      if (2 * std::max(c.first_nearer, c.second_nearer) < c.pairs || c.pairs < 5) return false;
-      const PieceShape &front = of(c.first_nearer > c.second_nearer ? c.first : c.second), &back = of(c.first_nearer > c.second_nearer ? c.second : c.first);
+      if (2 * c.nearer(c.front()) < c.pairs || c.pairs < 5) return false;
+      const PieceShape &front = of(c.front()), &back = of(c.other(c.front()));
       if (std::abs(front.top_m - back.top_m) > kSameHeight || back.bulge_m() > kHollow) return false;
       const double across = (front.mean_point() - back.mean_point()).norm();
       return front.bulge_m() > back.bulge_m() && across <= 0.6 * options_.max_size_m;
@@ -182,9 +184,8 @@ class Assembler {
 
   /// A flared rim hides the top of the outer wall below it: nearer than the wall, and both nearly as high.
   bool overhangs(const Contact& c) const {
-    const bool first_nearer = c.first_nearer > c.second_nearer;
-    const PieceShape &rim = of(first_nearer ? c.first : c.second), &wall = of(first_nearer ? c.second : c.first);
-    if (c.pairs < 8 || 2 * std::max(c.first_nearer, c.second_nearer) < c.pairs || c.gap_m > kFlare) return false;
+    const PieceShape &rim = of(c.front()), &wall = of(c.other(c.front()));
+    if (c.pairs < 8 || 2 * c.nearer(c.front()) < c.pairs || c.gap_m > kFlare) return false;
     if (rim.bulge_m() > kHollow || wall.top_m > rim.top_m || wall.top_m < kFlareHeight * rim.top_m) return false;
     return level(wall.mean_point() - rim.mean_point()).dot(level(rim.mean_point())) < 0;  // on the camera's side of it
   }
@@ -192,15 +193,14 @@ class Assembler {
   /// What is seen through a mouth is the inside: surrounded by what is nearer and higher, mostly by one thing, and not beside that, as what is seen through
   /// a handle. That one thing, or -1.
   int mouth_of(int p) const {
-    int outline = 0, hidden = 0, most = 0, mouth = -1;
+    int hidden = 0, most = 0, mouth = -1;
     for (const Contact& c : contacts_) {
-      if (c.first != p && c.second != p) continue;
-      const int other = c.first == p ? c.second : c.first, nearer = c.first == p ? c.second_nearer : c.first_nearer;
-      outline += c.pairs;
+      if (!c.is_of(p)) continue;
+      const int other = c.other(p), nearer = c.nearer(other);
       hidden += nearer;
       if (nearer > most) most = nearer, mouth = other;
     }
-    const int around = outline + of(p).open;
+    const int around = outline(p) + of(p).open;
     if (mouth < 0 || hidden < kSeenThrough * around || most < kMouthShare * around || of(mouth).top_m < of(p).top_m) return -1;
     const Eigen::Vector3d away = level(of(mouth).mean_point()).normalized(), off = level(of(p).mean_point() - of(mouth).mean_point());
     const double behind = off.dot(away), beside = (off - behind * away).norm();
@@ -215,8 +215,8 @@ class Assembler {
   int far_side_of(int p) const {
     if (of(p).base_m < 0.05) return -1;
     for (const Contact& c : contacts_) {
-      if ((c.first != p && c.second != p) || c.gap_m > 0.03) continue;
-      const int other = c.first == p ? c.second : c.first;
+      if (!c.is_of(p) || c.gap_m > 0.03) continue;
+      const int other = c.other(p);
       if (8 * of(p).pixels < of(other).pixels && of(p).top_m <= of(other).top_m) return other;
     }
     return -1;
@@ -229,11 +229,9 @@ class Assembler {
     int nearest = -1;
     double gap = kHangingGap;
     for (const Contact& c : contacts_) {
-      if ((c.first != p && c.second != p) || c.gap_m >= gap) continue;
-      const int other = c.first == p ? c.second : c.first;
-      if (of(other).pixels < of(p).pixels) continue;
+      if (!c.is_of(p) || c.gap_m >= gap || of(c.other(p)).pixels < of(p).pixels) continue;
       gap = c.gap_m;
-      nearest = other;
+      nearest = c.other(p);
     }
     return nearest >= 0 ? nearest : borne_by(p);
   }
@@ -243,21 +241,19 @@ class Assembler {
     int nearest = -1;
     double gap = kOverhangGap;
     for (const Contact& c : contacts_) {
-      if (c.gap_m >= gap || 2 * (c.first == p ? c.first_nearer : c.second == p ? c.second_nearer : 0) < c.pairs) continue;
-      const PieceShape& foot = of(c.first == p ? c.second : c.first);
+      if (!c.is_of(p) || c.gap_m >= gap || 2 * c.nearer(p) < c.pairs) continue;
+      const PieceShape& foot = of(c.other(p));
       if (foot.base_m > kReachesSupport || foot.top_m > of(p).top_m || foot.pixels < kFragmentPixels) continue;
       if (level(foot.mean_point() - of(p).mean_point()).norm() > of(p).spread_m()) continue;
       gap = c.gap_m;
-      nearest = c.first == p ? c.second : c.first;
+      nearest = c.other(p);
     }
     return nearest;
   }
 
   // It rises from a level top of the other, over most of the contact, and is more than a knob.
   bool stands_on(const Contact& c, int p) const {
-    if (c.first != p && c.second != p) return false;
-    const int above = c.first == p ? c.first_above : c.second_above, other = c.first == p ? c.second : c.first;
-    return c.touching >= 10 && 2 * above >= c.touching && of(p).top_m - of(p).base_m >= 0.02 && 6 * of(p).pixels >= of(other).pixels;
+    return c.is_of(p) && c.touching >= 10 && 2 * c.above(p) >= c.touching && of(p).top_m - of(p).base_m >= 0.02 && 6 * of(p).pixels >= of(c.other(p)).pixels;
   }
 
   // One surface on both sides of something nearer.
@@ -285,9 +281,7 @@ class Assembler {
     return -1;
   }
   bool in_front(int o, int p) const {
-    return std::any_of(contacts_.begin(), contacts_.end(), [&](const Contact& c) {
-      return (c.first == o && c.second == p && c.first_nearer >= 10) || (c.first == p && c.second == o && c.second_nearer >= 10);
-    });
+    return std::any_of(contacts_.begin(), contacts_.end(), [&](const Contact& c) { return c.is_of(o) && c.is_of(p) && c.nearer(o) >= 10; });
   }
 
   // Along the line between the middles there is nothing but the two, the occluder and missing readings.

@@ -18,6 +18,13 @@ struct Contact {
   double gap_left_m = 0, gap_right_m = 0;   ///< Smallest distance in the outer eighths of the boundary, by image column.
   double gap_middle_m = 0;                  ///< Median distance between them.
   double gap_m = 0;                         ///< Smallest distance.
+
+  // Of a piece `p` that is one of the two.
+  bool is_of(int p) const { return p == first || p == second; }
+  int other(int p) const { return p == first ? second : first; }
+  int nearer(int p) const { return p == first ? first_nearer : second_nearer; }  ///< Pairs at which it is in front.
+  int above(int p) const { return p == first ? first_above : second_above; }
+  int front() const { return first_nearer > second_nearer ? first : second; }    ///< The one that is in front at more pairs.
 };
 
 /// Contacts of all pieces, ordered by (first, second). `up` points away from the support.
