@@ -81,12 +81,10 @@ void fill_float32(const FittedModel& model, v1::Vertices& message) {
 }
 
 void fill_int16(const FittedModel& model, v1::Vertices& message) {
-  const std::span<const double> xyz = coordinates(model);
-  Eigen::Vector3d low(0, 0, 0), high(0, 0, 0);
-  bounds_of(xyz, low.data(), high.data());
-  const Eigen::Vector3d origin = 0.5 * (low + high);
-  const double scale = xyz.empty() ? 1.0 : std::max((high - low).maxCoeff() / 65534.0, 1e-9);
-  quantise_points(xyz, origin.data(), scale, *message.mutable_positions());
+  const Bounds box = bounds(model.vertices);
+  const Eigen::Vector3d origin = model.vertices.empty() ? Eigen::Vector3d(0, 0, 0) : box.centre();
+  const double scale = model.vertices.empty() ? 1.0 : std::max(box.size().maxCoeff() / 65534.0, 1e-9);
+  quantise_points(coordinates(model), origin.data(), scale, *message.mutable_positions());
   for (int axis = 0; axis < 3; ++axis) message.add_origin(origin[axis]);
   message.set_scale(scale);
 

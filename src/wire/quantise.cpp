@@ -10,16 +10,8 @@
 namespace gfp::wire {
 namespace {
 
-constexpr std::size_t kLanes = 24;   ///< Eight points at a time: a multiple of three and of every vector's length.
-constexpr std::size_t kBlock = 384;  ///< Likewise.
-
-__attribute__((target_clones("arch=x86-64-v3", "default"))) void widen_box(const double* values, std::size_t blocks, double* low, double* high) {
-  for (std::size_t block = 0; block < blocks; ++block, values += kLanes)
-    for (std::size_t i = 0; i < kLanes; ++i) {
-      low[i] = values[i] < low[i] ? values[i] : low[i];
-      high[i] = values[i] > high[i] ? values[i] : high[i];
-    }
-}
+constexpr std::size_t kLanes = 24;   ///< A multiple of every vector's length,
+constexpr std::size_t kBlock = 384;  ///< and of three.
 
 /// Truncation of what was made positive is rounding down: no library call, and the same bits on every machine.
 __attribute__((target_clones("arch=x86-64-v3", "default"))) void quantise_block(const double* values, const double* origins, double per_unit, std::size_t count, std::int16_t* out) {
@@ -56,26 +48,6 @@ void put_blocks(std::span<const In> values, std::string& bytes, Quantise&& quant
 }
 
 }  // namespace
-
-void bounds_of(std::span<const double> xyz, double low[3], double high[3]) {
-  if (xyz.empty()) return;
-  std::array<double, kLanes> lows, highs;
-  for (std::size_t i = 0; i < kLanes; ++i) lows[i] = highs[i] = xyz[i % 3];
-  const std::size_t blocks = xyz.size() / kLanes;
-  widen_box(xyz.data(), blocks, lows.data(), highs.data());
-  for (std::size_t i = blocks * kLanes; i < xyz.size(); ++i) {
-    lows[i % 3] = std::min(lows[i % 3], xyz[i]);
-    highs[i % 3] = std::max(highs[i % 3], xyz[i]);
-  }
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    low[axis] = lows[axis];
-    high[axis] = highs[axis];
-    for (std::size_t i = axis; i < kLanes; i += 3) {
-      low[axis] = std::min(low[axis], lows[i]);
-      high[axis] = std::max(high[axis], highs[i]);
-    }
-  }
-}
 
 void quantise_points(std::span<const double> xyz, const double origin[3], double scale, std::string& bytes) {
   std::array<double, kBlock> origins;

@@ -5,9 +5,6 @@
 
 namespace gfp::wire {
 
-/// The box around points x y z x y z..., all finite; without points: nothing is written.
-void bounds_of(std::span<const double> xyz, double low[3], double high[3]);
-
 /// `bytes` become the int16 (xyz[i] - origin[i % 3]) / scale to the nearest, ties up, within +-32767.
 void quantise_points(std::span<const double> xyz, const double origin[3], double scale, std::string& bytes);
 
