@@ -1,7 +1,9 @@
 // Sensors fail again and again in one process, as they run in the daemon (run_source, default options): each time frames come again, and nothing is left behind.
 // Ten cycles each here; more with
 //   GFP_SOAK_CYCLES=500 GFP_SOAK_LEDGER=ledger.jsonl soak_test
+// which goes on where the ledger ends.
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <atomic>
 #include <cstdlib>
@@ -11,8 +13,9 @@
 #include "app/isolated_source.hpp"
 #include "app/make_source.hpp"
 #include "gfp/core/mutex.hpp"
-#include "soak/ledger.hpp"
+#include "soak/holdings.hpp"
 #include "support/fakenect_folder.hpp"
+#include "support/soak_ledger.hpp"
 #include "synthetic/synthetic_source.hpp"
 #ifdef GFP_HAS_BUMBLEBEE
 #include "bumblebee/bumblebee_source.hpp"
@@ -28,10 +31,12 @@ namespace {
 
 using namespace std::chrono_literals;
 using test::Holdings;
-using test::Ledger;
+using test::SoakLedger;
+using test::Trial;
 
 constexpr long kRssSlack_kb = 20'000;  // what allocators keep after their first cycles; 500 leaks of a frame would be 300 MB
 constexpr Nanoseconds kGivenUp = 60s;
+constexpr std::uint64_t kCycles = 10;
 
 /// A source whose cable can be pulled.
 class Unpluggable final : public FrameSource {
@@ -98,25 +103,36 @@ class Runner {
 
 /// `fail`, lost, `mend`, frames again. The ledger holds the time from `mend` to the first frame. `left_open`: descriptors that a library leaves open each time.
 void soak(const std::string& name, FrameSource& source, const std::function<void()>& fail = [] {}, const std::function<void()>& mend = [] {}, const SourceOptions& options = {}, int left_open = 0) {
-  Ledger ledger(name);
+  const char* const cycles = std::getenv("GFP_SOAK_CYCLES");
+  const char* const file = std::getenv("GFP_SOAK_LEDGER");
   Holdings first;
+  int cycle = 0;  // of this process
   Runner runner(source, options);
   ASSERT_GE(runner.until_streaming(), 0) << name << ": " << runner.what();
-  for (int cycle = 0; cycle < ledger.cycles(); ++cycle) {
+  const auto one_cycle = [&](std::uint64_t) -> Trial {
     fail();
-    ASSERT_GE(runner.until_lost(), 0) << name << " cycle " << cycle;
+    if (runner.until_lost() < 0) return {"it was not lost", {}};
     mend();
     const double recovery_s = runner.until_streaming();
-    ASSERT_GE(recovery_s, 0) << name << " cycle " << cycle << ": " << runner.what();  // how long it took is the ledger's to tell: other programs run beside a test
+    if (recovery_s < 0) return {runner.what(), {}};  // how long it took is the ledger's to tell: other programs run beside a test
     Holdings held = Holdings::now();
     for (const Nanoseconds began = monotonic_now(); cycle > 1 && held.threads > first.threads && monotonic_now() - began < kGivenUp; held = Holdings::now()) std::this_thread::sleep_for(1ms);  // polling: a library's threads are on their way out
-    ledger.add(recovery_s, held);
     if (cycle == 1) first = held;  // the first cycle fills caches
-    if (cycle < 2) continue;
-    EXPECT_LE(held.descriptors, first.descriptors + 1 + left_open * (cycle - 1)) << name << " cycle " << cycle;
-    EXPECT_LE(held.threads, first.threads) << name << " cycle " << cycle;
-    EXPECT_LT(held.rss_kb, first.rss_kb + kRssSlack_kb) << name << " cycle " << cycle;
-  }
+    if (cycle > 1) {
+      EXPECT_LE(held.descriptors, first.descriptors + 1 + left_open * (cycle - 1)) << name << " cycle " << cycle;
+      EXPECT_LE(held.threads, first.threads) << name << " cycle " << cycle;
+      EXPECT_LT(held.rss_kb, first.rss_kb + kRssSlack_kb) << name << " cycle " << cycle;
+    }
+    ++cycle;
+    Trial trial;
+    trial.measured("recovery_s", recovery_s);
+    trial.measured("rss_kb", held.rss_kb);
+    trial.measured("threads", held.threads);
+    trial.measured("descriptors", held.descriptors);
+    trial.measured("pid", getpid());
+    return trial;
+  };
+  EXPECT_TRUE(SoakLedger(file != nullptr ? file : "").run(name, cycles != nullptr ? std::strtoull(cycles, nullptr, 10) : kCycles, one_cycle, 1)) << name << " cycle " << cycle;
 }
 
 void soak_cable(const std::string& name, const std::function<std::unique_ptr<FrameSource>()>& make, int left_open = 0) {

