@@ -1,8 +1,6 @@
 #include "cloud/refine_disparity.hpp"
 
-#include <algorithm>
 #include <array>
-#include <cmath>
 #include <vector>
 
 namespace gfp {
@@ -61,6 +59,16 @@ void steps(const std::array<const float*, kRows>& disparity, const std::array<co
   }
 }
 
+/// The disparities of one row moved by their steps, where these can be trusted.
+__attribute__((target_clones("arch=x86-64-v3", "default")))
+void refine(const float* whole, const float* step, int width, std::uint16_t* __restrict disparity) {
+  for (int u = 0; u < width; ++u) {
+    const bool trusted = (step[u] <= kMaxStep) & (step[u] >= -kMaxStep) & (whole[u] >= 0);
+    const float units = (whole[u] + step[u]) * kDisparityUnits + 0.5F;
+    disparity[u] = static_cast<std::uint16_t>(trusted ? static_cast<int>(units > 1 ? units : 1.0F) : disparity[u]);
+  }
+}
+
 }  // namespace
 
 void refine_disparity(const Image<std::uint8_t>& left, const Image<std::uint8_t>& right, DisparityImage& disparity) {
@@ -79,11 +87,7 @@ void refine_disparity(const Image<std::uint8_t>& left, const Image<std::uint8_t>
     steps({above.disparity.data(), here.disparity.data(), below.disparity.data()}, {above.gradient.data(), here.gradient.data(), below.gradient.data()},
           {above.difference.data(), here.difference.data(), below.difference.data()}, width, step.data());
     std::uint16_t* const out = &disparity.pixels.pixels[left.index(0, v)];
-    for (int u = 0; u < width; ++u) {
-      const auto i = static_cast<std::size_t>(u);
-      if (out[u] == 0 || !(std::abs(step[i]) <= kMaxStep) || here.disparity[i + kReach] < 0) continue;
-      out[u] = static_cast<std::uint16_t>(std::max(1.0F, (here.disparity[i + kReach] + step[i]) * kDisparityUnits + 0.5F));
-    }
+    refine(here.disparity.data() + kReach, step.data(), width, out);
   }
 }
 

@@ -38,17 +38,18 @@ int searched_disparities(const StereoOptions& options) {
   return 256;
 }
 
-/// The picture with its border pixels repeated around it.
+/// The picture with its border pixels repeated around it; or its mirror image.
 struct Padded {
   std::ptrdiff_t stride;
   Bytes pixels;
-  explicit Padded(const Image<std::uint8_t>& image) : stride(image.width + 2 * kCensusMargin), pixels(static_cast<std::size_t>(stride * (image.height + 2 * kCensusMargin))) {
+  explicit Padded(const Image<std::uint8_t>& image, bool is_mirrored) : stride(image.width + 2 * kCensusMargin), pixels(static_cast<std::size_t>(stride * (image.height + 2 * kCensusMargin))) {
     for (int v = -kCensusMargin; v < image.height + kCensusMargin; ++v) {
       const std::uint8_t* const from = &image.pixels[image.index(0, std::clamp(v, 0, image.height - 1))];
       std::uint8_t* const to = pixels.data() + (v + kCensusMargin) * stride;
       std::memset(to, from[0], kCensusMargin);
       std::memcpy(to + kCensusMargin, from, static_cast<std::size_t>(image.width));
       std::memset(to + kCensusMargin + image.width, from[image.width - 1], kCensusMargin);
+      if (is_mirrored) std::reverse(to, to + stride);
     }
   }
   const std::uint8_t* row(int v) const { return pixels.data() + (v + kCensusMargin) * stride + kCensusMargin; }
@@ -57,39 +58,32 @@ struct Padded {
 /// The buffers of one image's aggregation, and the row that uses them.
 class Aggregation {
  public:
-  Aggregation(int width, const StereoOptions& options) : min_disparity_(options.min_disparity_px), slot_(searched_disparities(options) + kPathGuard) {
+  Aggregation(int width, const StereoOptions& options) : slot_(searched_disparities(options) + kPathGuard) {
     row_.width = width;
     row_.disparities = slot_ - kPathGuard;
     row_.small_step = static_cast<std::uint8_t>(options.small_step_penalty);
     row_.jump = static_cast<std::uint8_t>(options.jump_penalty);
-    row_.first_invalid = width - min_disparity_;
-    const auto reach = static_cast<std::size_t>(width + min_disparity_ + row_.disparities);
-    for (auto* planes : {&left_, &right_, &reversed_})
-      for (Bytes& plane : *planes) plane.resize(reach);
+    row_.first_invalid = width - options.min_disparity_px;
+    for (std::size_t p = 0; p < 3; ++p) {
+      left_[p].resize(static_cast<std::size_t>(width));
+      right_[p].resize(static_cast<std::size_t>(width + options.min_disparity_px + row_.disparities));
+      row_.left[p] = left_[p].data();
+      row_.right[p] = right_[p].data() + options.min_disparity_px;
+    }
     for (Bytes& path : paths_) path = guarded(width + 2);
-    across_ = guarded(2);
-    for (Bytes& minimum : minima_) minimum.resize(reach);
-    row_.across = across_.data() + kPathGuard;
     row_.cost = slots(0), row_.sum = slots(1), row_.up = slots(2), row_.up_right = slots(3);
-    row_.best = minima_[0].data(), row_.best_sum = minima_[1].data(), row_.second_sum = minima_[2].data();
-    row_.right_sum = minima_[3].data(), row_.right_best = minima_[4].data();
+    for (Bytes& values : found_) values.resize(static_cast<std::size_t>(width));
+    row_.best = found_[0].data(), row_.best_sum = found_[1].data(), row_.second_sum = found_[2].data();
+    row_.sum_before = found_[3].data(), row_.sum_after = found_[4].data(), row_.right_best = found_[5].data();
   }
 
   const StereoRow& run(const Padded& left, const Padded& right, int v) {
-    census_row(left.row(v), left.stride, row_.width, left_[0].data(), left_[1].data(), left_[2].data());
-    census_row(right.row(v), right.stride, row_.width, right_[0].data(), right_[1].data(), right_[2].data());
-    for (std::size_t p = 0; p < 3; ++p) {
-      std::reverse_copy(right_[p].begin(), right_[p].begin() + row_.width, reversed_[p].begin());
-      row_.left[p] = left_[p].data();
-      row_.right[p] = reversed_[p].data() + min_disparity_;
-    }
+    kernels_.census_row(left.row(v), left.stride, 1, row_.width, left_[0].data(), left_[1].data(), left_[2].data());
+    kernels_.census_row(right.row(v), right.stride, -1, row_.width, right_[0].data(), right_[1].data(), right_[2].data());
     row_.up_left_before = slots(4 + v % 2), row_.up_left = slots(5 - v % 2);
-    aggregate_row(row_);
+    kernels_.aggregate_row(row_);
     return row_;
   }
-
-  /// Sums of the paths at pixel x.
-  const std::uint8_t* sums(int x) const { return row_.sum + static_cast<std::ptrdiff_t>(x) * slot_; }
 
  private:
   Bytes guarded(int slots) const {
@@ -100,33 +94,39 @@ class Aggregation {
   /// Slot 0 of a path's row: behind the first guard and slot -1.
   std::uint8_t* slots(int path) { return paths_[static_cast<std::size_t>(path)].data() + kPathGuard + slot_; }
 
-  int min_disparity_, slot_;
-  std::array<Bytes, 3> left_, right_, reversed_;
-  std::array<Bytes, 6> paths_;
-  std::array<Bytes, 5> minima_;
-  Bytes across_;
+  const StereoKernels& kernels_ = has_avx2_stereo_kernels() ? kAvx2StereoKernels : kAnyStereoKernels;
+  int slot_;
+  std::array<Bytes, 3> left_, right_;
+  std::array<Bytes, 6> paths_, found_;
   StereoRow row_;
 };
 
-/// Where two lines of equal and opposite slope through three sums meet, from the middle one, in kDisparityUnits. Lines, since census costs grow
-/// linearly with the error: a parabola errs half again as much.
-int fraction(const std::uint8_t* sum) {
-  const int slope = sum[-1] - sum[1], height = std::max(sum[-1], sum[1]) - sum[0];
-  if (height <= 0) return 0;
-  const float units = static_cast<float>(slope * (kDisparityUnits / 2)) / static_cast<float>(height);
-  return static_cast<int>(std::clamp(units, -0.5F * kDisparityUnits + 1, 0.5F * kDisparityUnits - 1));  // below half a pixel: rounding gives the middle back
+/// Which pixels' matches the right picture confirms: those that it matches about the same way. The only look-up: what follows takes many pixels at a time.
+void confirm(const StereoRow& given, int max_difference, std::uint8_t* is_confirmed) {
+  const StereoRow row = given;  // a local: the bytes that are stored below cannot change it
+  for (int x = 0; x < row.width; ++x) {
+    const int d = row.best[x], met = row.width - 1 - x + d;
+    is_confirmed[x] = met < row.first_invalid && std::abs(row.right_best[met] - d) <= max_difference ? 1 : 0;
+  }
 }
 
-/// The matches of one row that pass the checks.
-void take_matches(const Aggregation& aggregation, const StereoRow& row, const StereoOptions& options, std::uint16_t* disparity, std::uint8_t* confidence) {
-  const int max_difference = static_cast<int>(options.max_left_right_px);
+/// The matches of one row that pass the checks. Between whole disparities: where two lines of equal and opposite slope through three sums meet. Lines,
+/// since census costs grow linearly with the error: a parabola errs half again as much.
+__attribute__((target_clones("arch=x86-64-v3", "default")))
+void take_matches(const StereoRow& given, const StereoOptions& options, const std::uint8_t* is_confirmed, std::uint16_t* __restrict disparity, std::uint8_t* __restrict confidence) {
+  constexpr float kMost = 0.5F * kDisparityUnits - 1;  // below half a pixel: rounding gives the middle back
+  const StereoRow row = given;
+  const int min_disparity = options.min_disparity_px, min_confidence = options.min_confidence;
   for (int x = 0; x < row.width; ++x) {
-    const int d = row.best[x], second = row.second_sum[x] - row.best_sum[x], met = row.width - 1 - x + d;
-    if (second < options.min_confidence || met >= row.first_invalid || std::abs(row.right_best[met] - d) > max_difference) continue;
-    const bool inside = d > 0 && d + 1 < row.disparities;
-    const int units = kDisparityUnits * (d + options.min_disparity_px) + (inside ? fraction(aggregation.sums(x) + d) : 0);
-    disparity[x] = static_cast<std::uint16_t>(units);
-    confidence[x] = static_cast<std::uint8_t>(second);
+    const int d = row.best[x], before = row.sum_before[x], after = row.sum_after[x], second = row.second_sum[x] - row.best_sum[x];
+    const int height = (before > after ? before : after) - row.best_sum[x];
+    const bool has_slopes = (d > 0) & (d + 1 < row.disparities) & (height > 0), holds = (is_confirmed[x] != 0) & (second >= min_confidence);
+    float units = static_cast<float>((before - after) * (kDisparityUnits / 2)) / static_cast<float>(has_slopes ? height : 1);
+    units = units > kMost ? kMost : units;
+    units = units < -kMost ? -kMost : units;
+    const int found = kDisparityUnits * (d + min_disparity) + (has_slopes ? static_cast<int>(units) : 0);
+    disparity[x] = static_cast<std::uint16_t>(holds ? found : 0);
+    confidence[x] = static_cast<std::uint8_t>(holds ? second : 0);
   }
 }
 
@@ -134,18 +134,20 @@ void take_matches(const Aggregation& aggregation, const StereoRow& row, const St
 
 Result<DisparityImage> match_stereo(const Image<std::uint8_t>& left, const Image<std::uint8_t>& right, const StereoOptions& options) {
   if (const auto valid = check(left, right, options); !valid) return tl::unexpected<Error>(valid.error());
-  const Padded padded_left(left), padded_right(right);
+  const Padded padded_left(left, false), padded_right(right, true);
   Aggregation aggregation(left.width, options);
+  Bytes is_confirmed(static_cast<std::size_t>(left.width));
   DisparityImage found{Image<std::uint16_t>(left.width, left.height), Image<std::uint8_t>(left.width, left.height)};
   for (int v = 0; v < left.height; ++v) {
     const StereoRow& row = aggregation.run(padded_left, padded_right, v);
     const std::size_t at = found.pixels.index(0, v);
-    take_matches(aggregation, row, options, &found.pixels.pixels[at], &found.confidence.pixels[at]);
+    confirm(row, static_cast<int>(options.max_left_right_px), is_confirmed.data());
+    take_matches(row, options, is_confirmed.data(), &found.pixels.pixels[at], &found.confidence.pixels[at]);
   }
   refine_disparity(left, right, found);
   remove_small_regions(found.pixels, kDisparityUnits, options.min_region_px);
-  for (std::size_t i = 0; i < found.pixels.pixels.size(); ++i)
-    if (found.pixels.pixels[i] == 0) found.confidence.pixels[i] = 0;
+  std::transform(found.pixels.pixels.begin(), found.pixels.pixels.end(), found.confidence.pixels.begin(), found.confidence.pixels.begin(),
+                 [](std::uint16_t disparity, std::uint8_t confidence) { return disparity == 0 ? std::uint8_t{0} : confidence; });
   return found;
 }
 

@@ -1,0 +1,10 @@
+// The stereo kernels for CPUs with AVX2: CMakeLists.txt compiles this file for x86-64-v3, where there is one.
+#include "cloud/stereo_kernels.hpp"
+
+#ifdef __x86_64__
+#include "cloud/stereo_kernels.cpp"
+#else
+namespace gfp {
+const StereoKernels kAvx2StereoKernels{};
+}  // namespace gfp
+#endif
