@@ -8,15 +8,19 @@
 #include <cstdlib>
 #include <fstream>
 #include <iostream>
+#include <string_view>
 
 #include "bumblebee/fake/fake_bumblebee.hpp"
 #include "bumblebee/fake/textured_pair.hpp"
 #include "gfp/simulation/table_top_scene.hpp"
 
 int main(int argc, char** argv) {
-  if (argc < 2) {
-    std::cerr << "usage: gfp_fake_bumblebee CALIBRATION.yaml [SEED [OBJECTS [LOST_PACKETS_PER_MILLE [LAYOUT]]]]\n";
-    return 64;
+  if (argc < 2 || argv[1][0] == '-') {
+    const bool is_asked = argc > 1 && (std::string_view(argv[1]) == "--help" || std::string_view(argv[1]) == "-h");
+    (is_asked ? std::cout : std::cerr) << "usage: gfp_fake_bumblebee CALIBRATION.yaml [SEED [OBJECTS [LOST_PACKETS_PER_MILLE [LAYOUT]]]]\n"
+                                          "A stereo camera on the loopback interface that shows a synthetic table, until it is ended. Writes its calibration to CALIBRATION.yaml.\n"
+                                          "LAYOUT: interleaved, stacked, parts, two_devices\n";
+    return is_asked ? 0 : 64;
   }
   const std::uint64_t seed = argc > 2 ? std::strtoull(argv[2], nullptr, 10) : 7;
   gfp::TableTopOptions table;
