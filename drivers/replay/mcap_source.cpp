@@ -4,19 +4,18 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace gfp {
 
 McapSource::McapSource(McapStreams streams, ReplayOptions options)
     : streams_(std::move(streams)), options_(std::move(options)),
-      control_(options_.control ? options_.control : std::make_shared<ReplayControl>()) {
-  const double speed = options_.rate_hz > 0 ? options_.speed : 0;
-  control_->begin(streams_.time(0), since_begin(streams_.frames() - 1), speed);
-  position_ = first_at(Nanoseconds(std::llround(1e9 * options_.start_s)));
-}
+      control_(options_.control ? options_.control : std::make_shared<ReplayControl>()),
+      player_(control_->join(streams_.time(0), streams_.time(streams_.frames() - 1), options_.rate_hz > 0 ? options_.speed : 0)),
+      position_(streams_.frames()) {}
 
 SourceInfo McapSource::info() const {
-  const double duration_s = std::chrono::duration<double>(since_begin(streams_.frames() - 1)).count();
+  const double duration_s = std::chrono::duration<double>(streams_.time(streams_.frames() - 1) - streams_.time(0)).count();
   const double rate_hz = duration_s > 0 ? static_cast<double>(streams_.frames() - 1) / duration_s : 0;
   // Somebody who turns the knobs makes it slow or halt, which is no fault of the recording's.
   const bool is_steered = options_.control != nullptr;
@@ -24,66 +23,79 @@ SourceInfo McapSource::info() const {
 }
 
 Result<void> McapSource::open() {
-  if (position_ >= streams_.frames()) position_ = first_at(Nanoseconds(std::llround(1e9 * options_.start_s)));
-  pacer_.restart();
+  if (position_ >= streams_.frames()) position_ = first_at(start());
+  speed_ = control_->state().speed;
+  last_played_ = start();
+  keep_time_from(start());
   return {};
 }
 
-std::size_t McapSource::first_at(Nanoseconds position) const {
+/// Where all who share the control begin.
+Nanoseconds McapSource::start() const { return control_->span().begin + Nanoseconds(std::llround(1e9 * options_.start_s)); }
+
+std::size_t McapSource::first_at(Nanoseconds recorded_at) const {
   std::size_t low = 0, high = streams_.frames() - 1;
   while (low < high) {
     const std::size_t middle = (low + high) / 2;
-    if (since_begin(middle) < position) low = middle + 1;
+    if (streams_.time(middle) < recorded_at) low = middle + 1;
     else high = middle;
   }
   return low;
 }
 
+Nanoseconds McapSource::due(Nanoseconds recorded_at) const {
+  return Nanoseconds(std::llround(static_cast<double>((recorded_at + pass_offset_ + seek_offset_ - control_->span().begin).count()) / speed_));
+}
+
+/// That time of the recording is now.
+void McapSource::keep_time_from(Nanoseconds recorded_at) {
+  pacer_.restart();
+  if (speed_ > 0) pacer_.wait_until_due(due(recorded_at), std::chrono::milliseconds(0));
+}
+
 /// After a seek the stamps go on rising: as far as the play went on, not as far as the person jumped.
 void McapSource::follow_control() {
-  if (const auto target = control_->take_seek()) {
-    position_ = first_at(*target);
-    pacer_.restart();
-    if (sequence_ > 0) pass_offset_ += last_played_ + Nanoseconds(33'333'333) - since_begin(position_);
-    last_played_ = since_begin(position_);
+  const ReplayControl::State state = control_->state();
+  const bool has_new_speed = std::exchange(speed_, state.speed) != state.speed;
+  if (const auto seek = control_->take_seek(player_)) {
+    position_ = first_at(seek->target);
+    seek_offset_ = seek->offset;
+    keep_time_from(seek->target);
+  } else if (has_new_speed) {
+    keep_time_from(last_played_);
   }
-  if (const double speed = control_->state().speed; speed != speed_) {
-    speed_ = speed;
-    pacer_.restart();
-  }
+  if (state.paused && position_ < streams_.frames()) keep_time_from(streams_.time(position_));  // a step: at once
 }
 
 Result<Frame> McapSource::grab(std::chrono::milliseconds timeout) {
-  if (!control_->wait_until_running(timeout)) return failure(ErrorCode::kPaused, "somebody holds the replay");
+  if (!control_->wait_until_running(player_, timeout)) return failure(ErrorCode::kPaused, "somebody holds the replay");
   follow_control();
   if (position_ >= streams_.frames() && !options_.loop) {
-    control_->played(last_played_, true);
+    control_->played(player_, last_played_, true);
     if (control_->holds_at_end()) {
-      if (!control_->wait_for_seek(timeout)) return failure(ErrorCode::kPaused, "the recording has come to its end and waits there");
+      if (!control_->wait_for_seek(player_, timeout)) return failure(ErrorCode::kPaused, "the recording has come to its end and waits there");
       return grab(timeout);
     }
     return failure(ErrorCode::kEndOfStream, "the recording has come to its end");
   }
   if (position_ >= streams_.frames()) {
-    position_ = first_at(Nanoseconds(std::llround(1e9 * options_.start_s)));
-    pass_offset_ += last_played_ + Nanoseconds(33'333'333) - since_begin(position_);
+    position_ = first_at(start());
+    pass_offset_ += control_->span().end + kAfterJump - start();
   }
-  const Nanoseconds played = since_begin(position_) + pass_offset_;
-  if (speed_ > 0) due_ = Nanoseconds(std::llround(static_cast<double>(played.count()) / speed_));
-  if (speed_ > 0 && !pacer_.wait_until_due(due_, timeout)) return failure(ErrorCode::kTimeout, fmt::format("the next frame is not due within {} ms", timeout.count()));
+  if (speed_ > 0 && !pacer_.wait_until_due(due(streams_.time(position_)), timeout)) return failure(ErrorCode::kTimeout, fmt::format("the next frame is not due within {} ms", timeout.count()));
   const std::size_t index = position_;
   position_ += static_cast<std::size_t>(options_.step);
-  last_played_ = since_begin(index);
+  last_played_ = streams_.time(index);
   auto loaded = streams_.load(index);
   if (!loaded) return tl::unexpected<Error>(loaded.error());
   report_ = std::move(loaded->report);
   Frame frame = std::move(loaded->frame);
   frame.sequence = sequence_++;
-  last_stamp_ = std::max(frame.stamps.sensor + pass_offset_, last_stamp_ + Nanoseconds(1));
+  last_stamp_ = std::max(frame.stamps.sensor + pass_offset_ + seek_offset_, last_stamp_ + Nanoseconds(1));
   frame.stamps.sensor = last_stamp_;
   frame.stamps.monotonic = options_.frame_time ? last_stamp_ : monotonic_now();
   frame.stamps.realtime = options_.frame_time ? last_stamp_ : options_.recorded_time ? streams_.time(index) : realtime_now();
-  control_->played(last_played_, false);
+  control_->played(player_, last_played_, false);
   return frame;
 }
 

@@ -12,12 +12,13 @@
 namespace gfp {
 
 /// Plays an MCAP recording as the camera that made it: in its own rhythm times `speed`, every `step`-th frame, from `start_s` on.
-/// A control may pause it, step and seek. Stamps are the recorded ones and rise strictly; those of the host are the recorded ones
+/// A control may pause it, step and seek; players of several sensors that share one keep time together. Stamps are the recorded ones and rise strictly; those of the host are the recorded ones
 /// too in deterministic mode (`frame_time`), so that nothing depends on how fast it is played. One thread at a time.
 /// grab() errors: kTimeout (not due yet), kPaused (held by the control, or at the end), kEndOfStream, and what McapStreams::load() says of a bad frame, which is then left behind.
 class McapSource final : public FrameSource {
  public:
   McapSource(McapStreams streams, ReplayOptions options);
+  ~McapSource() override { control_->leave(player_); }
 
   SourceInfo info() const override;
   Result<void> open() override;
@@ -30,19 +31,22 @@ class McapSource final : public FrameSource {
 
  private:
   void follow_control();
-  Nanoseconds since_begin(std::size_t index) const { return streams_.time(index) - streams_.time(0); }
-  std::size_t first_at(Nanoseconds position) const;
+  std::size_t first_at(Nanoseconds recorded_at) const;
+  Nanoseconds start() const;
+  Nanoseconds due(Nanoseconds recorded_at) const;
+  void keep_time_from(Nanoseconds recorded_at);
 
   McapStreams streams_;
   const ReplayOptions options_;
   const std::shared_ptr<ReplayControl> control_;
+  const ReplayControl::Player player_;
   Pacer pacer_;
   double speed_ = 1;              ///< That the pacer counts with.
-  std::size_t position_ = 0;      ///< Next frame.
+  std::size_t position_;          ///< Next frame.
   std::uint64_t sequence_ = 0;
-  Nanoseconds due_{};             ///< In the pacer's time: recorded time divided by the speed.
   Nanoseconds last_played_{};     ///< Recorded time of the last frame.
-  Nanoseconds pass_offset_{};     ///< Added to the stamps of later passes.
+  Nanoseconds pass_offset_{};     ///< Added to the stamps of later passes...
+  Nanoseconds seek_offset_{};     ///< ...and after a seek.
   Nanoseconds last_stamp_{-1};
   FrameReport report_;
 };

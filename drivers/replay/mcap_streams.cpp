@@ -1,8 +1,10 @@
 #include "replay/mcap_streams.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <set>
 #include <tuple>
 
 #include "replay/ros_messages.hpp"
@@ -75,9 +77,25 @@ Result<McapStreams> McapStreams::open(const std::filesystem::path& file, const R
     const bool is_asked_for = options.topic.empty() || channel.topic == options.topic || sensor + "/depth/" == options.topic;
     if (is_asked_for && (!ours || sensor < *ours)) ours = sensor;
   }
+  if (ours && options.topic.empty())
+    for (const auto& [id, channel] : streams.reader_.registry().channels)
+      if (streams.schema_name(channel) == wire::kFrameSchema && parent_of(channel.topic) != *ours) streams.left_out_.insert(parent_of(channel.topic) + "/depth/");
   if (auto chosen = ours ? streams.choose_ours(*ours) : streams.choose_theirs(); !chosen) return pass_on(chosen.error());
   if (streams.depth_.empty()) return failure(ErrorCode::kUnsupported, fmt::format("{}: frames = 0, expected depth images", file.string()));
   return streams;
+}
+
+Result<std::vector<std::string>> McapStreams::recorded_sensors(const std::filesystem::path& file) {
+  const auto reader = McapReader::open(file);
+  if (!reader) return pass_on(reader.error());
+  std::set<std::string> names;
+  for (const auto& [id, channel] : reader->registry().channels) {
+    const McapSchema* schema = reader->schema_of(channel);
+    if (schema == nullptr || schema->name != wire::kFrameSchema) continue;
+    const std::string sensor = parent_of(channel.topic);
+    names.insert(sensor.substr(sensor.rfind('/') + 1));
+  }
+  return std::vector<std::string>(names.begin(), names.end());
 }
 
 Result<void> McapStreams::choose_ours(const std::string& sensor) {
@@ -139,6 +157,7 @@ Result<LoadedFrame> McapStreams::load(std::size_t index) {
   auto loaded = is_ours_ ? load_ours(index) : load_theirs(index);
   if (!loaded) return loaded;
   loaded->report.file = file_;
+  if (index == 0 && !left_out_.empty()) loaded->report.notes.push_back(fmt::format("other sensors left out: {}", fmt::join(left_out_, ", ")));
   loaded->frame.sensor = options_.sensor.empty() ? recorded_sensor_ : options_.sensor;
   return loaded;
 }

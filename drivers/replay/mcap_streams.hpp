@@ -3,6 +3,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,9 @@ class McapStreams {
  public:
   /// Errors: as McapReader::open() and messages(); kUnsupported (no depth images, or no topic of that name), which lists what is there.
   static Result<McapStreams> open(const std::filesystem::path& file, const ReplayOptions& options);
+
+  /// The sensors that a gfpd recorded into the file, by name; none: others made it. Errors: as McapReader::open().
+  static Result<std::vector<std::string>> recorded_sensors(const std::filesystem::path& file);
 
   /// The sensor's name where a gfpd recorded it, else `replay`.
   const std::string& recorded_sensor() const { return recorded_sensor_; }
@@ -45,6 +49,7 @@ class McapStreams {
   std::filesystem::path file_;
   bool is_ours_ = false;
   std::string recorded_sensor_ = "replay";
+  std::set<std::string> left_out_;                      ///< Topics of the other sensors' depth, where none was asked for.
   std::string depth_schema_, color_schema_, camera_schema_;
   std::vector<McapMessageRef> depth_;                   ///< One a frame.
   std::map<std::uint64_t, McapMessageRef> info_;        ///< Ours, by log time.

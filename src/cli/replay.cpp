@@ -1,5 +1,6 @@
-// gfp replay FILE: a gfpd whose camera is a recording. Every frame is processed, in the recording's rhythm, and published.
+// gfp replay FILE: a gfpd whose cameras are a recording. Every frame is processed, in the recording's rhythm, and published.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <atomic>
@@ -15,6 +16,7 @@
 #include "daemon/daemon.hpp"
 #include "daemon/logging.hpp"
 #include "replay/mcap_source.hpp"
+#include "wire/topics.hpp"
 
 namespace gfp {
 namespace {
@@ -24,6 +26,7 @@ struct ReplayArguments {
   std::vector<std::string> settings;
   ReplayOptions replay;
   std::string name;
+  std::vector<std::string> sensors;  ///< That are played.
   ListenArguments listen;
 };
 
@@ -36,6 +39,7 @@ DaemonParts parts_of(const ReplayArguments& arguments, const PrimitiveLibrary& l
   return {[arguments](const SensorConfig& sensor) -> Result<std::unique_ptr<FrameSource>> {
             ReplayOptions options = arguments.replay;
             options.sensor = sensor.name;
+            if (arguments.sensors.size() > 1) options.topic = wire::sensor_topic(sensor.name, "depth");
             auto source = open_mcap(arguments.file, options);
             if (!source) return tl::unexpected(source.error());
             return std::unique_ptr<FrameSource>(std::move(*source));
@@ -52,24 +56,40 @@ DaemonParts parts_of(const ReplayArguments& arguments, const PrimitiveLibrary& l
           [](const std::string&, const std::vector<std::uint32_t>&, std::optional<PointType>) -> Result<RetypedPrimitive> { return failure(ErrorCode::kUnsupported, "gfp replay changes no primitives, expected gfpd"); }};
 }
 
-Result<DaemonOptions> options_of(const ReplayArguments& arguments, const std::string& sensor) {
+Result<DaemonOptions> options_of(const ReplayArguments& arguments) {
   std::vector<std::string> settings = arguments.settings;
   auto options = config::load_daemon_options(arguments.config, settings);
   if (!options) return options;
   options->lossless = true;
-  options->sensors = {SensorConfig{}};
-  options->sensors[0].name = sensor;
-  options->sensors[0].driver = "replay";
-  options->sensors[0].input = arguments.file;
+  options->sensors.clear();
+  for (const std::string& name : arguments.sensors) {
+    SensorConfig& sensor = options->sensors.emplace_back();
+    sensor.name = name;
+    sensor.driver = "replay";
+    sensor.input = arguments.file;
+  }
   if (auto valid = validate(*options); !valid) return tl::unexpected(valid.error());
   return options;
 }
 
+/// All that were recorded, under their names; one, where a topic or a name is asked for, or others made the recording.
+Result<std::vector<std::string>> sensors_of(const ReplayArguments& arguments) {
+  const auto recorded = McapStreams::recorded_sensors(arguments.file);
+  if (!recorded) return recorded;
+  if (recorded->size() > 1 && arguments.replay.topic.empty()) {
+    if (arguments.name.empty()) return recorded;
+    return failure(ErrorCode::kInvalidArgument, fmt::format("--name = {}, expected --topic with it: {} holds {} sensors: {}", arguments.name, arguments.file, recorded->size(), fmt::join(*recorded, ", ")));
+  }
+  const auto probe = McapStreams::open(arguments.file, arguments.replay);
+  if (!probe) return tl::unexpected(probe.error());
+  return std::vector<std::string>{!arguments.name.empty() ? arguments.name : probe->recorded_sensor()};
+}
+
 void replay(ReplayArguments& arguments, ExitStatus& status) {
-  auto probe = McapStreams::open(arguments.file, arguments.replay);
-  if (!probe) return status.fail(std::cerr, "replay", probe.error());
-  const std::string sensor = !arguments.name.empty() ? arguments.name : probe->recorded_sensor();
-  const auto options = options_of(arguments, sensor);
+  auto sensors = sensors_of(arguments);
+  if (!sensors) return status.fail(std::cerr, "replay", sensors.error());
+  arguments.sensors = std::move(*sensors);
+  const auto options = options_of(arguments);
   if (!options) return status.fail(std::cerr, "replay", options.error());
   if (const auto logging = start_logging(options->log); !logging) return status.fail(std::cerr, "replay", logging.error());
   arguments.replay.control = std::make_shared<ReplayControl>();
@@ -91,14 +111,14 @@ void replay(ReplayArguments& arguments, ExitStatus& status) {
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
   }
   (*daemon)->stop();
-  if (arguments.listen.json) std::cout << nlohmann::ordered_json{{"file", arguments.file}, {"sensor", sensor}, {"frames", progress->frames.load()}, {"objects", progress->objects.load()}}.dump() << std::endl;
+  if (arguments.listen.json) std::cout << nlohmann::ordered_json{{"file", arguments.file}, {"sensor", fmt::format("{}", fmt::join(arguments.sensors, ", "))}, {"frames", progress->frames.load()}, {"objects", progress->objects.load()}}.dump() << std::endl;
   else std::cout << fmt::format("{}: {} frames, {:.1f} objects a frame\n", arguments.file, progress->frames.load(), static_cast<double>(progress->objects) / std::max<double>(1, static_cast<double>(progress->frames)));
 }
 
 }  // namespace
 
 void add_replay_command(CLI::App& app, ExitStatus& status) {
-  CLI::App& command = *app.add_subcommand("replay", "Processes and publishes a recording as gfpd would its camera: ours, or ROS 2 MCAP files with depth images");
+  CLI::App& command = *app.add_subcommand("replay", "Processes and publishes a recording as gfpd would its cameras: ours, or ROS 2 MCAP files with depth images");
   const auto arguments = std::make_shared<ReplayArguments>();
   ReplayOptions& replay_options = arguments->replay;
   command.add_option("FILE", arguments->file, "MCAP file")->required();
@@ -108,9 +128,9 @@ void add_replay_command(CLI::App& app, ExitStatus& status) {
   command.add_option("--start", replay_options.start_s, "Seconds of the recording to leave out")->check(CLI::NonNegativeNumber);
   command.add_option("--step", replay_options.step, "Every so many-th frame")->capture_default_str()->check(CLI::Range(1, 1'000'000));
   command.add_flag("--loop", replay_options.loop, "Starts over at the end");
-  command.add_option("--topic", replay_options.topic, "Of the depth images; by default the recording's own");
+  command.add_option("--topic", replay_options.topic, "Of the depth images; by default those of all sensors that were recorded");
   command.add_option("--color-topic", replay_options.color_topic, "Of colour images registered to depth, in files of others");
-  command.add_option("--name", arguments->name, "Of the sensor, in topics; by default as recorded");
+  command.add_option("--name", arguments->name, "Of the sensor, in topics; by default as recorded; with several, for the one of --topic");
   command.add_option("--seconds", arguments->listen.seconds, "Ends after so many seconds")->check(CLI::NonNegativeNumber);
   command.add_option("--count", arguments->listen.count, "Ends after so many frames");
   command.add_flag("--json", arguments->listen.json, "A JSON object at the end");

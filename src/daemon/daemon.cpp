@@ -98,6 +98,7 @@ void Daemon::start_sensors(const DaemonOptions& options, Sources sources) {
   }
   for (auto& [name, worker] : retired) worker->request_stop();
   retired.clear();
+  for (const auto& [name, source] : sources) inbox_.expect(name);  // all, before the first frame of any
   for (const SensorConfig& sensor : options.sensors) {
     const auto source = sources.find(sensor.name);
     if (source == sources.end()) continue;

@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -112,18 +113,18 @@ gfp::Result<gfp::RetypedPrimitive> retype(LiveLibrary& live, const std::string& 
   return done;
 }
 
-/// One recording has one time line; where several are played, or one in a process of its own, nobody steers them.
+/// Recordings have one time line; where a sensor is none, or is played in a process of its own, nobody steers them.
 bool is_steerable(const gfp::SensorConfig& sensor) { return sensor.driver == "replay" && sensor.input.ends_with(".mcap") && sensor.isolation == "none"; }
 
 std::shared_ptr<gfp::ReplayControl> playback_of(const gfp::DaemonOptions& options) {
-  const bool is_replay = options.view.enabled && options.sensors.size() == 1 && is_steerable(options.sensors[0]);
+  const bool is_replay = options.view.enabled && std::all_of(options.sensors.begin(), options.sensors.end(), is_steerable);
   if (!is_replay) return nullptr;
   auto playback = std::make_shared<gfp::ReplayControl>();
   playback->hold_at_end();
   return playback;
 }
 
-/// `playback`: of the recording that is played; may be empty.
+/// `playback`: of the recordings that are played; may be empty.
 gfp::DaemonParts parts(LiveLibrary& live, std::shared_ptr<gfp::ReplayControl> playback) {
   return {[playback = std::move(playback)](gfp::SensorConfig sensor) {
             if (playback && is_steerable(sensor)) {

@@ -49,6 +49,7 @@ void SensorWorker::relay(const std::stop_token& stop) {
     if (recorder_ != nullptr) recorder_->put(*frame);
     inbox_.put(std::move(*frame), stop);
   }
+  inbox_.finished(config_.name);
 }
 
 void SensorWorker::changed(const SourceStatus& status) {

@@ -37,6 +37,30 @@ TEST(FrameInbox, LosslessWaitsInsteadOfDropping) {
   EXPECT_EQ(inbox.dropped("a"), 0U);
 }
 
+// However fast each of them is: what comes out is in the order of their stamps, until one has ended.
+TEST(FrameInbox, LosslessMergesSensorsByTheirStamps) {
+  FrameInbox inbox(HandOver::kLossless);
+  std::stop_source stop;
+  inbox.expect("fast");
+  inbox.expect("slow");
+  const auto produce = [&](const std::string& sensor, std::int64_t first, std::int64_t every, std::uint64_t count, std::chrono::microseconds pause) {
+    for (std::uint64_t i = 0; i < count; ++i) {
+      auto made = std::make_shared<Frame>(*frame(sensor, i, 0));
+      made->stamps.sensor = Nanoseconds(first + every * static_cast<std::int64_t>(i));
+      inbox.put(made, stop.get_token());
+      std::this_thread::sleep_for(pause);
+    }
+    inbox.finished(sensor);
+  };
+  std::jthread fast([&] { produce("fast", 0, 10, 30, std::chrono::microseconds(0)); }), slow([&] { produce("slow", 5, 20, 10, std::chrono::microseconds(500)); });
+  Nanoseconds last{-1};
+  for (int i = 0; i < 40; ++i) {
+    const auto taken = inbox.take(stop.get_token());
+    EXPECT_GT((*taken)->stamps.sensor, last) << "frame " << i;
+    last = (*taken)->stamps.sensor;
+  }
+}
+
 TEST(FrameInbox, StopEndsEveryWait) {
   FrameInbox inbox(HandOver::kLossless);
   std::stop_source stop;

@@ -22,6 +22,12 @@ sensors:
     synthetic: {seed: 7, rate_hz: 5, table: {objects: 2}}
 recording: {mode: continuous, folder: RECORDINGS, min_free_mb: 1}
 """
+TWO_SENSORS = """
+sensors:
+  - {name: left, driver: synthetic, synthetic: {seed: 4, rate_hz: 5, azimuth_rad: -2.2, table: {objects: 2}}}
+  - {name: right, driver: synthetic, synthetic: {seed: 4, rate_hz: 5, azimuth_rad: -0.9, table: {objects: 2}}}
+recording: {mode: continuous, folder: RECORDINGS, min_free_mb: 1}
+"""
 
 
 def wait_for(what, condition):
@@ -86,6 +92,31 @@ def check_recorder(folder, config):
     assert len(with_daemon("ring", ring)) >= 1
 
 
+def check_two_sensors(folder):
+    """A recording of two sensors: all of it is played, in the order of recording at any speed, to the same objects; one of them if its topic is named."""
+    config, recordings = folder / "two.yaml", folder / "two"
+    config.write_text(TWO_SENSORS.replace("RECORDINGS", str(recordings)))
+    daemon = subprocess.Popen([GFPD, "--config", config], stderr=subprocess.DEVNULL)
+    try:
+        gfp("sub", "/gfp/scene/", "--count", 6)
+        daemon.send_signal(signal.SIGTERM)
+        assert daemon.wait(timeout=DEADLINE_S) == 0
+    finally:
+        daemon.kill()
+    recording = next(recordings.glob("*.mcap"))
+    played = []
+    for speed in (0, 1):
+        kept = folder / f"played_{speed}"
+        options = ["--set", "recording.mode=continuous", "--set", f"recording.folder={kept}", "--set", "recording.min_free_mb=1", "--set", "log.level=off"]
+        said = lines(gfp("replay", recording, "--speed", speed, "--json", *options))[0]
+        assert said["sensor"] == "left, right" and said["frames"] >= 6 and said["objects"] > 0, said
+        played.append(next(kept.glob("*.mcap")))
+    assert lines(gfp("diff", *played, "--json"))[0]["differences"] == []
+    alone = lines(gfp("replay", recording, "--speed", 0, "--json", "--topic", "/gfp/sensor/right/depth/", "--set", "log.level=off"))[0]
+    assert alone["sensor"] == "right" and 0 < alone["frames"] < said["frames"], alone
+    gfp("replay", recording, "--name", "other", expected=64)
+
+
 def main():
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
@@ -120,6 +151,7 @@ def main():
             assert lines(gfp("diff", file, file, "--json"))[0]["differences"] == []
 
         check_recorder(folder, config)
+        check_two_sensors(folder)
 
         # The recording fits to the same objects every time, and gfp replay publishes every frame of it.
         fits = [folder / "a.jsonl", folder / "b.jsonl"]

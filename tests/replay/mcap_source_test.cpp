@@ -41,17 +41,24 @@ Frame sample_frame(int i) {
   return frame;
 }
 
-std::filesystem::path record_samples(const test::TemporaryFolder& folder, int count) {
+/// Frames of sensors in the order that is given.
+std::filesystem::path record(const test::TemporaryFolder& folder, const std::vector<Frame>& frames) {
   const auto path = folder / "ours.mcap";
   auto file = RecordingFile::create(path);
   EXPECT_TRUE(file);
   RecordContent content;
   content.color = true;
   wire::RecordingMessages messages(content);
-  for (int i = 0; i < count; ++i)
-    messages.put(sample_frame(i), sample_frame(i).stamps.realtime, [&](const McapChannelSpec& spec, const McapMessage& message) { EXPECT_TRUE(file->put(spec, message)); });
+  for (const Frame& frame : frames)
+    messages.put(frame, frame.stamps.realtime, [&](const McapChannelSpec& spec, const McapMessage& message) { EXPECT_TRUE(file->put(spec, message)); });
   EXPECT_TRUE(file->finish());
   return path;
+}
+
+std::filesystem::path record_samples(const test::TemporaryFolder& folder, int count) {
+  std::vector<Frame> frames;
+  for (int i = 0; i < count; ++i) frames.push_back(sample_frame(i));
+  return record(folder, frames);
 }
 
 ReplayOptions at_once() {
@@ -161,6 +168,53 @@ TEST(McapSource, HoldsAtItsEndForASeek) {
   ASSERT_TRUE(again) << again.error().what;
   EXPECT_EQ(again->stamps.realtime, sample_frame(1).stamps.realtime);
   EXPECT_EQ((*source)->info().rate_hz, 0) << "who is steered is not slow";
+}
+
+// The right sensor's recording begins three frames after the left one's and ends with it: both keep the time of recording.
+TEST(McapSource, SeveralSensorsShareOneTimeLine) {
+  constexpr int kLeft = 8, kLate = 3;
+  const test::TemporaryFolder folder;
+  std::vector<Frame> frames;
+  for (int i = 0; i < kLeft; ++i) {
+    frames.push_back(sample_frame(i));
+    frames.back().sensor = "left";
+    if (i < kLate) continue;
+    frames.push_back(sample_frame(i));
+    frames.back().sensor = "right";
+  }
+  const auto file = record(folder, frames);
+  EXPECT_EQ(*McapStreams::recorded_sensors(file), (std::vector<std::string>{"left", "right"}));
+  ReplayOptions options;
+  options.recorded_time = true;
+  options.control = std::make_shared<ReplayControl>();
+  const auto player_of = [&](const std::string& sensor) {
+    options.sensor = sensor;
+    options.topic = "/gfp/sensor/" + sensor + "/depth/";
+    return *open_mcap(file, options);
+  };
+  const auto left = player_of("left"), right = player_of("right");
+  ReplayControl& control = *options.control;
+  EXPECT_EQ(control.state().begin, sample_frame(0).stamps.realtime);
+  EXPECT_EQ(control.state().duration, (kLeft - 1) * kPeriod);
+  ASSERT_TRUE(left->open() && right->open());
+
+  EXPECT_EQ(left->grab(1ms)->stamps.realtime, sample_frame(0).stamps.realtime);
+  EXPECT_EQ(right->grab(1ms).error().code, ErrorCode::kTimeout) << "its first frame is not due yet";
+  EXPECT_EQ(right->grab(1s)->stamps.realtime, sample_frame(kLate).stamps.realtime);
+  EXPECT_EQ(control.state().position, kLate * kPeriod) << "of whoever is furthest";
+
+  control.pause();
+  control.seek(5 * kPeriod);
+  for (const auto* player : {&left, &right}) {
+    EXPECT_EQ((*player)->grab(1ms)->stamps.realtime, sample_frame(5).stamps.realtime) << "a seek goes to all of them";
+    EXPECT_EQ((*player)->grab(1ms).error().code, ErrorCode::kPaused);
+  }
+  control.set_speed(0);
+  control.resume();
+  while (left->grab(1s)) {}
+  EXPECT_FALSE(control.state().ended) << "the right one has not ended";
+  while (right->grab(1s)) {}
+  EXPECT_TRUE(control.state().ended);
 }
 
 /// A message of ROS 2: CDR in either byte order.

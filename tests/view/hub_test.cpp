@@ -94,9 +94,12 @@ std::string playback_request(bool play, float speed, std::optional<std::uint64_t
   return bytes + id;
 }
 
+constexpr Nanoseconds kBegin(1'000'000'000'000);
+constexpr ReplayControl::Player kPlayer = 0;
+
 std::shared_ptr<ReplayControl> control_of_ten_seconds() {
   auto control = std::make_shared<ReplayControl>();
-  control->begin(Nanoseconds(1'000'000'000'000), Nanoseconds(10'000'000'000), 1);
+  control->join(kBegin, kBegin + Nanoseconds(10'000'000'000), 1);
   return control;
 }
 
@@ -108,9 +111,9 @@ TEST(Hub, AReplayIsSteeredAndThoseWhoSteerLearnOfIt) {
   hub.heard_binary(one.client, playback_request(false, 0.5F, 1'004'000'000'000U, "x"));
   EXPECT_TRUE(control->state().paused);
   EXPECT_EQ(control->state().speed, 0.5);
-  EXPECT_TRUE(control->wait_until_running(std::chrono::milliseconds(0))) << "paused, but the frame that was sought is shown";
-  EXPECT_FALSE(control->wait_until_running(std::chrono::milliseconds(0)));
-  EXPECT_EQ(control->take_seek(), Nanoseconds(4'000'000'000));
+  EXPECT_TRUE(control->wait_until_running(kPlayer, std::chrono::milliseconds(0))) << "paused, but the frame that was sought is shown";
+  EXPECT_FALSE(control->wait_until_running(kPlayer, std::chrono::milliseconds(0)));
+  EXPECT_EQ(control->take_seek(kPlayer)->target, kBegin + Nanoseconds(4'000'000'000));
   for (Viewer* viewer : {&one, &other, &spectator}) viewer->read();
   ASSERT_EQ(one.states.size(), 1U);
   EXPECT_EQ(one.states[0], playback_state({PlaybackStatus::kPaused, Nanoseconds(1'004'000'000'000), 0.5, true, "x"}));
@@ -119,7 +122,7 @@ TEST(Hub, AReplayIsSteeredAndThoseWhoSteerLearnOfIt) {
   EXPECT_EQ(other.states[1], playback_state({PlaybackStatus::kPaused, Nanoseconds(1'004'000'000'000), 0.5, true, ""}));
   EXPECT_TRUE(spectator.states.empty()) << "who never asked does not know the message";
   hub.heard_binary(one.client, playback_request(false, 0.5F, 1U, ""));  // before the beginning
-  EXPECT_EQ(control->take_seek(), Nanoseconds(0));
+  EXPECT_EQ(control->take_seek(kPlayer)->target, kBegin);
 }
 
 TEST(Hub, AReplayTellsItsTimeAndItsEnd) {
@@ -128,7 +131,7 @@ TEST(Hub, AReplayTellsItsTimeAndItsEnd) {
   Viewer viewer(hub), spectator(hub);
   hub.heard_binary(viewer.client, playback_request(true, 1, std::nullopt, ""));
   for (int i = 1; i <= 3; ++i) {
-    control->played(Nanoseconds(i), false);
+    control->played(kPlayer, kBegin + Nanoseconds(i), false);
     hub.take(of_frame());
   }
   for (Viewer* each : {&viewer, &spectator}) {
@@ -136,7 +139,7 @@ TEST(Hub, AReplayTellsItsTimeAndItsEnd) {
     EXPECT_EQ(each->times, std::vector<std::string>{time_message(Nanoseconds(1'000'000'000'003))}) << "the newest only";
   }
   EXPECT_EQ(viewer.states.size(), 1U);
-  control->played(Nanoseconds(3), true);
+  control->played(kPlayer, kBegin + Nanoseconds(3), true);
   Inbox::Content content;
   content.statuses["front"].set_sensor("front");
   hub.take(std::move(content));
