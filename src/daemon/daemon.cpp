@@ -1,5 +1,6 @@
 #include "daemon/daemon.hpp"
 
+#include <malloc.h>
 #include <spdlog/spdlog.h>
 #include <tbb/task_arena.h>
 
@@ -17,6 +18,8 @@ bool same(const SensorConfig& a, const SensorConfig& b) {
   right.sensors = {b};
   return config::to_yaml(left) == config::to_yaml(right);
 }
+
+constexpr std::uint64_t kFlood = 1000;  ///< Refused connections that leave holes in the heap.
 
 HandOver hand_over(const DaemonOptions& options) { return options.lossless ? HandOver::kLossless : HandOver::kLatestWins; }
 
@@ -146,7 +149,15 @@ bool Daemon::is_responsive() const {
 }
 
 void Daemon::tick() {
-  for (const Refusal& refusal : publisher_->take_refusals()) spdlog::warn("refused {} connection(s) from {}: {}", refusal.count, refusal.peer, refusal.why);
+  const std::uint64_t refused_before = refused_;
+  for (const Refusal& refusal : publisher_->take_refusals()) {
+    spdlog::warn("refused {} connection(s) from {}: {}", refusal.count, refusal.peer, refusal.why);
+    refused_ += refusal.count;
+  }
+  if (refused_ == refused_before && refused_ >= kFlood) {  // it is over: what it left free within the heap goes back to the system
+    malloc_trim(0);
+    refused_ = 0;
+  }
   MutexLock lock(mutex_);
   for (const auto& [name, sensor] : sensors_) {
     sensor->statistics().turn(monotonic_now());

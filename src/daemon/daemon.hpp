@@ -99,6 +99,7 @@ class Daemon {
   std::unique_ptr<Publisher> publisher_;
   std::unique_ptr<ControlDesk> desk_;
   std::unique_ptr<Shadow> shadow_;
+  std::uint64_t refused_ = 0;                 ///< Connections since the heap was last trimmed; of the thread that ticks.
   std::atomic<Nanoseconds> working_since_{};  ///< Monotonic; 0: the pipeline waits for a frame.
   std::jthread pipeline_;  ///< Last: it uses all of the above.
 };
