@@ -8,9 +8,9 @@
 
 namespace gfp::test {
 
-/// 20 subscribers and 4 viewers that are stuck beside a good subscriber, for half a minute, against half a minute without them. Even
-/// trials: our own client over ipc, stopped by SIGSTOP; odd ones: plain ZeroMQ over tcp.
-Trial stuck_trial(std::uint64_t number);
+/// 20 subscribers and 4 viewers that are stuck beside a good subscriber, for so long, against half a minute without them. Even trials: our
+/// own client over ipc, stopped by SIGSTOP; odd ones: plain ZeroMQ over tcp.
+Trial stuck_trial(std::uint64_t number, double seconds);
 /// What a process of the above does: listens to everything. `plain`: without what our client does beyond ZeroMQ's defaults.
 void listen_for_ever(const std::vector<std::string>& endpoints, bool plain);
 

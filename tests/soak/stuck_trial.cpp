@@ -11,7 +11,7 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr int kStuck = 20, kViewers = 4;
-constexpr double kPhase_s = 30;
+constexpr double kAlone_s = 30;
 constexpr double kMostMbEach = 32, kDroppedWithin_s = 30;
 
 double p99(std::vector<double>& values) {
@@ -70,14 +70,14 @@ void listen_for_ever(const std::vector<std::string>& endpoints, bool plain) {
   for (zmq::message_t part;;) static_cast<void>(socket.recv(part));
 }
 
-Trial stuck_trial(std::uint64_t number) {
+Trial stuck_trial(std::uint64_t number, double seconds) {
   Trial trial;
   DaemonProcess& served = daemon();
   ChildProcess& process = served.process();
   const bool plain = number % 2 == 1;
   Subscriber good = served.subscribe({"/gfp/sensor/kinect/depth/", "/gfp/scene/"});
   if (!served.is_serving()) return {"nothing is published: " + served.log(), {}};
-  const Heard alone = listen(good, kPhase_s, [] {});
+  const Heard alone = listen(good, kAlone_s, [] {});
 
   const long descriptors_before = process.descriptors();
   const double before_mb = process.rss_mb();
@@ -93,7 +93,7 @@ Trial stuck_trial(std::uint64_t number) {
   const Nanoseconds stopped = monotonic_now();
   trial.measured("missed_as_they_stopped", listen(good, 1, [] {}).missed);  // that is what 20 busy subscribers cost on so few cores
   double most_mb = 0, dropped_s = -1;
-  const Heard beside = listen(good, kPhase_s, [&] {
+  const Heard beside = listen(good, seconds, [&] {
     most_mb = std::max(most_mb, process.rss_mb());
     if (dropped_s < 0 && process.descriptors() <= descriptors_before) dropped_s = std::chrono::duration<double>(monotonic_now() - stopped).count();
   });
@@ -112,7 +112,7 @@ Trial stuck_trial(std::uint64_t number) {
   if (beside.missed > alone.missed) trial.failure = std::to_string(beside.missed) + " messages lost beside stuck subscribers, " + std::to_string(alone.missed) + " without";
   if (mb_each > kMostMbEach) trial.failure = std::to_string(mb_each) + " MB a stuck client";
   if (dropped_s < 0 || dropped_s > kDroppedWithin_s)
-    trial.failure = std::to_string(process.descriptors() - descriptors_before) + " connections of stuck clients are still there after " + std::to_string(kPhase_s) + " s";
+    trial.failure = std::to_string(process.descriptors() - descriptors_before) + " connections of stuck clients are still there after " + std::to_string(seconds) + " s";
   return trial;
 }
 
