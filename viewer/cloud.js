@@ -78,6 +78,15 @@ export class Cloud {
     this.isCalibrated = true;
   }
 
+  get isReady() {
+    return Boolean(this.isCalibrated && this.hasDepth);
+  }
+
+  /** What comes next is another sensor's. */
+  reset() {
+    this.isCalibrated = this.hasDepth = this.material.uniforms.hasColor.value = false;
+  }
+
   setDepth(image) {
     const { width, height, data } = image;
     const words = data.byteOffset % 2 === 0 ? new Uint16Array(data.buffer, data.byteOffset, width * height) : new Uint16Array(data.slice().buffer);
@@ -96,7 +105,7 @@ export class Cloud {
       this.points.geometry.dispose();
       this.points.geometry = geometry;
     }
-    this.points.visible = Boolean(this.isCalibrated);
+    this.hasDepth = true;
   }
 
   setColor(image) {

@@ -7,7 +7,7 @@ import { RETYPE, Retype } from "./retype.js";
 import { World } from "./world.js";
 
 const $ = (id) => document.getElementById(id);
-const state = { selected: null, scene: null, sensor: null, topologies: new Map(), statuses: new Map(), isPaused: false, pointMode: "colour", second: null, meshMode: "seen" };
+const state = { selected: null, scene: null, sensor: null, sensors: [], scenes: new Map(), seconds: new Map(), topologies: new Map(), statuses: new Map(), isPaused: false, pointMode: "colour", second: null, meshMode: "seen" };
 const world = new World($("canvas"), $("labels"), select);
 const retype = new Retype(world, (fields) => connection.call(RETYPE, fields), () => {
   retype.place();
@@ -46,12 +46,15 @@ function onMessage(topic, read, logTime_ms) {
     return;
   } else if (topic === "/gfp/scene/") {
     const scene = read();
+    state.scenes.set(scene.header.sensor, scene);
     if (state.sensor === null || scene.header.sensor === state.sensor) takeScene(scene, player.isActive ? null : Date.now() - logTime_ms);
   } else if (SHADOW.test(topic)) {
     const scene = read();
+    state.seconds.set(scene.header.sensor, scene);
     if (state.sensor === null || scene.header.sensor === state.sensor) takeSecond(scene);
   } else if (stream[2] === "camera") {
     world.cloud.setCalibration(read());
+    world.showChoice();
   } else {
     if (stream[2] === "depth") world.cloud.setDepth(read());
     else world.cloud.setColor(read());
@@ -155,7 +158,30 @@ const chooseCompare = radioGroup($("compare"), "Second", [["off", "Off"], ["besi
   showChoice();
 });
 
+/** Of several sensors the picture is one's; the others' last scenes are kept for when they are chosen. */
+function lookThrough(sensor) {
+  if (sensor === state.sensor) return;
+  state.sensor = sensor;
+  world.cloud.reset();
+  connection.review();
+  const scene = state.scenes.get(sensor), second = state.seconds.get(sensor);
+  if (scene) takeScene(scene, null);
+  if (second) takeSecond(second);
+  world.showChoice();
+}
+
+let chooseSensor = null;
+function takeSensors(names) {
+  if (names.join() === state.sensors.join()) return;
+  state.sensors = names;
+  $("sensor-choice").replaceChildren();
+  $("sensor-choice").hidden = names.length < 2;
+  if (names.length && !names.includes(state.sensor)) lookThrough(names[0]);
+  chooseSensor = radioGroup($("sensor-choice"), "Sensor", names.map((name) => [name, name]), state.sensor, lookThrough);
+}
+
 function takeTopics(topics) {
+  takeSensors([...new Set(topics.map((topic) => STREAM.exec(topic)?.[1]).filter(Boolean))].sort());
   const hasSecond = topics.some((topic) => SHADOW.test(topic));
   $("compare").hidden = !hasSecond;
   if (!hasSecond && world.options.compare !== "off") chooseCompare("off");
@@ -187,6 +213,7 @@ const KEYS = [
   ["4 5 6", "Points: colour, distance, objects", ["4", "5", "6"], (key) => choosePoints(["colour", "distance", "objects"][key - 4])],
   ["P M G T N", "Points, meshes, grasps, table, names on or off", ["p", "m", "g", "t", "n"], (key) => toggles.get({ p: "points", m: "meshes", g: "grasps", t: "table", n: "names" }[key])()],
   ["C", "Second method, where one runs: off, beside, instead", ["c"], () => $("compare").hidden || chooseCompare({ off: "beside", beside: "instead", instead: "off" }[world.options.compare])],
+  ["V", "Look through the next sensor, where there are several", ["v"], () => state.sensors.length > 1 && chooseSensor(state.sensors[(state.sensors.indexOf(state.sensor) + 1) % state.sensors.length])],
   ["Space", "Pause; of a replay, the replay", [" "], pause],
   [", .", "Of a replay: a frame back or on", [",", "."], (key) => player.isActive && player.step(key === "," ? -1 : 1)],
   ["Shift+← →", "Of a replay: a second back or on", ["Shift+ArrowLeft", "Shift+ArrowRight"], (key) => player.isActive && player.jump(key === "Shift+ArrowLeft" ? -1 : 1)],
@@ -216,7 +243,7 @@ connection = new Connection(`${location.protocol === "https:" ? "wss" : "ws"}://
     if (playback) showConnection("replay");
   },
   onState: (now) => {
-    if (now === "restarted") state.topologies.clear(), state.statuses.clear();
+    if (now === "restarted") for (const kept of [state.topologies, state.statuses, state.scenes, state.seconds]) kept.clear();
     if (!state.isPaused) showConnection(now);
   },
 });

@@ -142,7 +142,7 @@ export class World {
   showChoice() {
     const { options, last } = this;
     if (!last) return;
-    this.cloud.points.visible = options.points && Boolean(this.cloud.isCalibrated);
+    this.cloud.points.visible = options.points && this.cloud.isReady;
     this.table.visible = options.table;
     this.labels.hidden = !options.names;
     const isShown = new Set(this.shown());

@@ -26,6 +26,17 @@ assert.ok(Math.abs((await state()).at - 0.5) < 0.1, `a click into the middle led
 await page.evaluate(() => window.gfp.world.aim());
 await picture("replay_paused");
 
+// Two sensors were recorded: the other one's picture of the same objects, which stands at the same place of the recording.
+const shown = () => page.evaluate(() => { const { sensor, scene } = window.gfp.state; return { sensor, ids: scene.objects.map(({ id }) => Number(id)).sort() }; });
+const first = await shown();
+await page.keyboard.press("v");
+await page.waitForFunction((before) => { const { state, world } = window.gfp; return state.sensor !== before && state.scene.header.sensor === state.sensor && world.cloud.points.visible; }, first.sensor);
+assert.deepEqual((await shown()).ids, first.ids, "one object has two ids");
+assert.equal((await state()).status, "paused");
+await picture("replay_other_sensor");
+await page.locator("#sensor-choice button", { hasText: first.sensor }).click();
+await page.waitForFunction((before) => window.gfp.state.scene.header.sensor === before, first.sensor);
+
 // A frame on and back, a second on, by the keyboard.
 await page.locator("#canvas").focus();
 const here = await state();

@@ -49,8 +49,10 @@ def free_port():
         return probe.getsockname()[1]
 
 
-SENSOR = "{name: virtual, driver: synthetic, synthetic: {seed: 7, rate_hz: 10, table: {objects: 4, classes: [mug, bottle, box, bowl, can]}}}"
-RECORDED_FRAMES = 40
+TABLE = "seed: 7, rate_hz: 10, table: {objects: 4, classes: [mug, bottle, box, bowl, can]}"
+SENSOR = f"{{name: virtual, driver: synthetic, synthetic: {{{TABLE}}}}}"
+OTHER = f"{{name: across, driver: synthetic, synthetic: {{{TABLE}, azimuth_rad: 0.5}}}}"  # it looks at the same table
+RECORDED_FRAMES = 80
 
 
 class Daemon:
@@ -71,8 +73,8 @@ class Daemon:
 
 
 def record(folder):
-    """A recording of what the synthetic sensor sees."""
-    daemon = Daemon(folder, f"sensors: [{SENSOR}]\nrecording: {{mode: continuous, folder: {folder}/recordings}}")
+    """A recording of what two synthetic sensors see."""
+    daemon = Daemon(folder, f"sensors: [{SENSOR}, {OTHER}]\nrecording: {{mode: continuous, folder: {folder}/recordings}}")
     try:
         count = subprocess.run(["node", MODULES / "wait_for_frames.mjs", str(daemon.port), str(RECORDED_FRAMES)], timeout=300)
     finally:
@@ -93,7 +95,8 @@ def main():
         subprocess.run([gfp, "primitive", "retype", "mug", "--primitives", primitives, "--set", "auto"], check=True, stdout=subprocess.DEVNULL)
         os.environ.update(GFP_TOOL=str(gfp), GFP_PRIMITIVES=str(primitives))
         if "replay" in SCRIPT:
-            text = f"sensors: [{{name: virtual, driver: replay, input: {record(folder)}}}]"
+            recording = record(folder)
+            text = "sensors:" + "".join(f"\n  - {{name: {name}, driver: replay, input: {recording}, replay: {{topic: /gfp/sensor/{name}/depth/}}}}" for name in ("virtual", "across"))
         else:
             text = f"sensors: [{SENSOR}]\npipeline: {{shadow: superquadric}}\nprimitives: {primitives}"
         daemon = Daemon(folder, text)
