@@ -273,7 +273,7 @@ void aggregate_row(const StereoRow& row) {
 
 }  // namespace
 
-#ifdef __AVX2__
+#ifdef GFP_AVX2_STEREO_KERNELS
 const StereoKernels kAvx2StereoKernels{census_row, aggregate_row};
 #else
 const StereoKernels kAnyStereoKernels{census_row, aggregate_row};

@@ -2,6 +2,7 @@
 #include "cloud/stereo_kernels.hpp"
 
 #ifdef __x86_64__
+#define GFP_AVX2_STEREO_KERNELS
 #include "cloud/stereo_kernels.cpp"
 #else
 namespace gfp {
