@@ -4,11 +4,13 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <iterator>
 #include <set>
 #include <tuple>
 
 #include "replay/ros_messages.hpp"
 #include "wire/recorded_messages.hpp"
+#include "wire/topics.hpp"
 
 namespace gfp {
 namespace {
@@ -70,16 +72,19 @@ Result<McapStreams> McapStreams::open(const std::filesystem::path& file, const R
   auto reader = McapReader::open(file);
   if (!reader) return pass_on(reader.error());
   McapStreams streams(std::move(*reader), options, file);
-  std::optional<std::string> ours;
+  std::set<std::string> recorded;
   for (const auto& [id, channel] : streams.reader_.registry().channels) {
     if (streams.schema_name(channel) != wire::kFrameSchema) continue;
     const std::string sensor = parent_of(channel.topic);
-    const bool is_asked_for = options.topic.empty() || channel.topic == options.topic || sensor + "/depth/" == options.topic;
-    if (is_asked_for && (!ours || sensor < *ours)) ours = sensor;
+    if (options.topic.empty() || channel.topic == options.topic || sensor + "/depth/" == options.topic) recorded.insert(sensor);
   }
-  if (ours && options.topic.empty())
-    for (const auto& [id, channel] : streams.reader_.registry().channels)
-      if (streams.schema_name(channel) == wire::kFrameSchema && parent_of(channel.topic) != *ours) streams.left_out_.insert(parent_of(channel.topic) + "/depth/");
+  std::optional<std::string> ours;
+  if (const auto namesake = recorded.find(parent_of(wire::sensor_topic(options.sensor, "depth"))); namesake != recorded.end()) {
+    ours = *namesake;
+  } else if (!recorded.empty()) {
+    ours = *recorded.begin();
+    for (auto other = std::next(recorded.begin()); other != recorded.end(); ++other) streams.left_out_.insert(*other + "/depth/");
+  }
   if (auto chosen = ours ? streams.choose_ours(*ours) : streams.choose_theirs(); !chosen) return pass_on(chosen.error());
   if (streams.depth_.empty()) return failure(ErrorCode::kUnsupported, fmt::format("{}: frames = 0, expected depth images", file.string()));
   return streams;

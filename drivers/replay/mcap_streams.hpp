@@ -16,6 +16,7 @@ namespace gfp {
 /// topics that hold depth, camera and colour are found by schema and name, or named by the options.
 class McapStreams {
  public:
+  /// Of several sensors that a gfpd recorded: that of the options' topic, else of their name, else the first.
   /// Errors: as McapReader::open() and messages(); kUnsupported (no depth images, or no topic of that name), which lists what is there.
   static Result<McapStreams> open(const std::filesystem::path& file, const ReplayOptions& options);
 
@@ -49,7 +50,7 @@ class McapStreams {
   std::filesystem::path file_;
   bool is_ours_ = false;
   std::string recorded_sensor_ = "replay";
-  std::set<std::string> left_out_;                      ///< Topics of the other sensors' depth, where none was asked for.
+  std::set<std::string> left_out_;                      ///< Topics of the other sensors' depth, where none was asked for by topic or name.
   std::string depth_schema_, color_schema_, camera_schema_;
   std::vector<McapMessageRef> depth_;                   ///< One a frame.
   std::map<std::uint64_t, McapMessageRef> info_;        ///< Ours, by log time.

@@ -16,7 +16,6 @@
 #include "daemon/daemon.hpp"
 #include "daemon/logging.hpp"
 #include "replay/mcap_source.hpp"
-#include "wire/topics.hpp"
 
 namespace gfp {
 namespace {
@@ -39,7 +38,6 @@ DaemonParts parts_of(const ReplayArguments& arguments, const PrimitiveLibrary& l
   return {[arguments](const SensorConfig& sensor) -> Result<std::unique_ptr<FrameSource>> {
             ReplayOptions options = arguments.replay;
             options.sensor = sensor.name;
-            if (arguments.sensors.size() > 1) options.topic = wire::sensor_topic(sensor.name, "depth");
             auto source = open_mcap(arguments.file, options);
             if (!source) return tl::unexpected(source.error());
             return std::unique_ptr<FrameSource>(std::move(*source));

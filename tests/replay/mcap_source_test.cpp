@@ -189,9 +189,13 @@ TEST(McapSource, SeveralSensorsShareOneTimeLine) {
   options.control = std::make_shared<ReplayControl>();
   const auto player_of = [&](const std::string& sensor) {
     options.sensor = sensor;
-    options.topic = "/gfp/sensor/" + sensor + "/depth/";
     return *open_mcap(file, options);
   };
+  options.sensor = "another";
+  EXPECT_EQ((*McapStreams::open(file, options)).load(0)->report.notes, std::vector<std::string>{"other sensors left out: /gfp/sensor/right/depth/"});
+  options.topic = "/gfp/sensor/right/depth/";
+  EXPECT_EQ((*McapStreams::open(file, options)).recorded_sensor(), "right");
+  options.topic.clear();
   const auto left = player_of("left"), right = player_of("right");
   ReplayControl& control = *options.control;
   EXPECT_EQ(control.state().begin, sample_frame(0).stamps.realtime);

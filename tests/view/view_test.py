@@ -96,7 +96,7 @@ def main():
         os.environ.update(GFP_TOOL=str(gfp), GFP_PRIMITIVES=str(primitives))
         if "replay" in SCRIPT:
             recording = record(folder)
-            text = "sensors:" + "".join(f"\n  - {{name: {name}, driver: replay, input: {recording}, replay: {{topic: /gfp/sensor/{name}/depth/}}}}" for name in ("virtual", "across"))
+            text = "sensors:" + "".join(f"\n  - {{name: {name}, driver: replay, input: {recording}}}" for name in ("virtual", "across"))
         else:
             text = f"sensors: [{SENSOR}]\npipeline: {{shadow: superquadric}}\nprimitives: {primitives}"
         daemon = Daemon(folder, text)
