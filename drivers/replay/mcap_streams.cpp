@@ -30,6 +30,16 @@ std::string parent_of(std::string topic) {
   return slash == std::string::npos ? std::string() : topic.substr(0, slash);
 }
 
+/// What the topics of each sensor that a gfpd recorded begin with.
+std::set<std::string> sensor_topics(const McapReader& reader) {
+  std::set<std::string> topics;
+  for (const auto& [id, channel] : reader.registry().channels)
+    if (const McapSchema* schema = reader.schema_of(channel); schema != nullptr && schema->name == wire::kFrameSchema) topics.insert(parent_of(channel.topic));
+  return topics;
+}
+
+std::string name_of(const std::string& sensor_topic) { return sensor_topic.substr(sensor_topic.rfind('/') + 1); }
+
 /// How many leading names two topics share.
 std::size_t kinship(const std::string& a, const std::string& b) {
   std::size_t shared = 0;
@@ -72,12 +82,8 @@ Result<McapStreams> McapStreams::open(const std::filesystem::path& file, const R
   auto reader = McapReader::open(file);
   if (!reader) return pass_on(reader.error());
   McapStreams streams(std::move(*reader), options, file);
-  std::set<std::string> recorded;
-  for (const auto& [id, channel] : streams.reader_.registry().channels) {
-    if (streams.schema_name(channel) != wire::kFrameSchema) continue;
-    const std::string sensor = parent_of(channel.topic);
-    if (options.topic.empty() || channel.topic == options.topic || sensor + "/depth/" == options.topic) recorded.insert(sensor);
-  }
+  std::set<std::string> recorded = sensor_topics(streams.reader_);
+  if (!options.topic.empty()) std::erase_if(recorded, [&](const std::string& sensor) { return sensor + "/frame/" != options.topic && sensor + "/depth/" != options.topic; });
   std::optional<std::string> ours;
   if (const auto namesake = recorded.find(parent_of(wire::sensor_topic(options.sensor, "depth"))); namesake != recorded.end()) {
     ours = *namesake;
@@ -93,19 +99,14 @@ Result<McapStreams> McapStreams::open(const std::filesystem::path& file, const R
 Result<std::vector<std::string>> McapStreams::recorded_sensors(const std::filesystem::path& file) {
   const auto reader = McapReader::open(file);
   if (!reader) return pass_on(reader.error());
-  std::set<std::string> names;
-  for (const auto& [id, channel] : reader->registry().channels) {
-    const McapSchema* schema = reader->schema_of(channel);
-    if (schema == nullptr || schema->name != wire::kFrameSchema) continue;
-    const std::string sensor = parent_of(channel.topic);
-    names.insert(sensor.substr(sensor.rfind('/') + 1));
-  }
-  return std::vector<std::string>(names.begin(), names.end());
+  std::vector<std::string> names;
+  for (const std::string& sensor : sensor_topics(*reader)) names.push_back(name_of(sensor));
+  return names;
 }
 
 Result<void> McapStreams::choose_ours(const std::string& sensor) {
   is_ours_ = true;
-  recorded_sensor_ = sensor.substr(sensor.rfind('/') + 1);
+  recorded_sensor_ = name_of(sensor);
   const auto refs = [&](const char* stream) -> Result<std::vector<McapMessageRef>> {
     const McapChannel* channel = channel_of(sensor + "/" + stream + "/");
     return channel != nullptr ? refs_of(*channel) : std::vector<McapMessageRef>();
